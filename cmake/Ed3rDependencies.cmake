@@ -1,0 +1,31 @@
+# Debian 12 packages; scripts/setup installs them.
+
+find_package(OpenMP REQUIRED)
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(Bullet REQUIRED)
+find_package(Ceres REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(fmt REQUIRED)
+find_package(SQLite3 REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(GDAL REQUIRED)
+find_package(embree 3 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+if(ED3R_TESTS)
+  find_package(GTest REQUIRED)
+endif()
+
+# Bullet ships variables, not targets: wrap them once, as system headers.
+add_library(ed3r_bullet INTERFACE)
+target_include_directories(ed3r_bullet SYSTEM INTERFACE ${BULLET_INCLUDE_DIRS})
+target_link_libraries(ed3r_bullet INTERFACE BulletDynamics BulletCollision LinearMath)
+
+add_library(ed3r_opencv INTERFACE)
+# Debian ships OpenCV's CMake package only with all of its modules; the few that are used are found by name.
+find_path(ED3R_OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
+target_include_directories(ed3r_opencv SYSTEM INTERFACE ${ED3R_OPENCV_INCLUDE})
+foreach(module core imgproc imgcodecs)
+  find_library(ED3R_OPENCV_${module} opencv_${module} REQUIRED)
+  target_link_libraries(ed3r_opencv INTERFACE ${ED3R_OPENCV_${module}})
+endforeach()

@@ -1,0 +1,34 @@
+# One target per folder, all with the same rules.
+
+add_library(ed3r_rules INTERFACE)
+# -ffp-contract=off: a compiler that fuses where it likes would make results depend on the build.
+target_compile_options(ed3r_rules INTERFACE -Wall -Wextra -Wpedantic -ffp-contract=off -fno-math-errno)
+target_include_directories(ed3r_rules INTERFACE "${CMAKE_SOURCE_DIR}")
+if(ED3R_WERROR)
+  target_compile_options(ed3r_rules INTERFACE -Werror)
+endif()
+if(ED3R_SANITIZE)
+  target_compile_options(ed3r_rules INTERFACE "-fsanitize=${ED3R_SANITIZE}" -fno-omit-frame-pointer)
+  target_link_options(ed3r_rules INTERFACE "-fsanitize=${ED3R_SANITIZE}")
+endif()
+
+# ed3r_library(NAME SOURCES a.cc ... DEPS targets ...): a static library of one folder.
+function(ed3r_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC ed3r_rules ${ARG_DEPS})
+endfunction()
+
+# ed3r_test(NAME SOURCES a_test.cc ... DEPS targets ...): a GoogleTest program, one CTest entry per folder of tests.
+function(ed3r_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ed3r_rules ${ARG_DEPS} GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE
+    ED3R_SOURCE_DIR="${CMAKE_SOURCE_DIR}" ED3R_BINARY="${CMAKE_BINARY_DIR}/ed3r")
+  add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY "${CMAKE_BINARY_DIR}")
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 600)
+  endif()
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT})
+endfunction()

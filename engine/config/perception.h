@@ -1,0 +1,112 @@
+// Detection: which tier looks at the world, and the few parameters of the fast tier (R13-R16, R33, R34).
+//
+// The fast tier ("profile") turns what the camera could see into confidences of the frames of one sensing
+// period:
+//   signal  s   = w_fire a_fire + w_smoke a_smoke + sum of distractors          (a: visible share of the
+//   image) logit   z_i = slope log10(s / half_signal) + N(0, view_sigma) per timestep + N(0, frame_sigma) per
+//   frame confidence of frame i = ceiling / (1 + exp(-z_i)), and 0 below frame_threshold.
+// The Full and the Quantized model differ only in half_signal, slope, ceiling and the two sigmas. A tier made
+// of rendered pixels can fit them; until then they are calibrated on the RBS row alone.
+#pragma once
+
+#include "engine/config/field.h"
+
+namespace ed3r {
+
+enum class PerceptionTier { kProfile };
+template <>
+struct EnumNames<PerceptionTier> {
+  static constexpr EnumName<PerceptionTier> kNames[] = {{PerceptionTier::kProfile, "profile"}};
+};
+
+// Response of one detection model.
+struct ResponseConfig {
+  double half_signal = 0.002;
+  double slope = 4.0;
+  double ceiling = 0.99;
+  double view_sigma = 0.5;
+  double frame_sigma = 0.3;
+
+  template <class Self, class Visitor>
+  static void Describe(Self& self, Visitor&& visit) {
+    constexpr std::string_view kSource = "calibrated (A36)";
+    visit("half_signal", self.half_signal,
+          {.min = 1e-7,
+           .max = 1,
+           .source = kSource,
+           .meaning = "signal (share of the image) at half the ceiling"});
+    visit("slope", self.slope,
+          {.unit = "logit/decade",
+           .min = 0.1,
+           .max = 50,
+           .source = kSource,
+           .meaning = "growth of the logit with the signal"});
+    visit("ceiling", self.ceiling,
+          {.min = 0.5, .max = 1, .source = kSource, .meaning = "largest confidence"});
+    visit("view_sigma", self.view_sigma,
+          {.unit = "logit",
+           .min = 0,
+           .max = 10,
+           .source = kSource,
+           .meaning = "fluctuation from timestep to timestep"});
+    visit("frame_sigma", self.frame_sigma,
+          {.unit = "logit",
+           .min = 0,
+           .max = 10,
+           .source = kSource,
+           .meaning = "fluctuation from frame to frame"});
+  }
+};
+
+struct PerceptionConfig {
+  PerceptionTier tier = PerceptionTier::kProfile;
+  double frame_threshold = 0.5;
+  double fire_weight = 1.0;
+  double smoke_weight = 0.35;
+  double haze_range_m = 600.0;
+  double distractors_per_km2 = 120.0;
+  double distractor_radius_m = 2.5;
+  double distractor_weight = 0.5;
+  double distractor_tilt_deg = 50.0;
+  ResponseConfig full;
+  ResponseConfig quantized{
+      .half_signal = 0.004, .slope = 3.0, .ceiling = 0.93, .view_sigma = 0.7, .frame_sigma = 0.6};
+
+  template <class Self, class Visitor>
+  static void Describe(Self& self, Visitor&& visit) {
+    constexpr std::string_view kSource = "calibrated (A36)";
+    visit("tier", self.tier, {.source = "none in the paper", .meaning = "how confidences are made"});
+    visit("frame_threshold", self.frame_threshold,
+          {.min = 0, .max = 1, .source = "R33", .meaning = "a frame's confidence below this counts as 0"});
+    visit("fire_weight", self.fire_weight,
+          {.min = 0, .max = 10, .source = kSource, .meaning = "weight of visible flame"});
+    visit("smoke_weight", self.smoke_weight,
+          {.min = 0, .max = 10, .source = kSource, .meaning = "weight of visible smoke"});
+    visit("haze_range_m", self.haze_range_m,
+          {.unit = "m",
+           .min = 50,
+           .max = 1e6,
+           .source = kSource,
+           .meaning = "distance at which haze leaves 1/e of a signal"});
+    visit("distractors_per_km2", self.distractors_per_km2,
+          {.unit = "1/km^2",
+           .min = 0,
+           .max = 5000,
+           .source = "R34",
+           .meaning = "sources of false confidence, drawn per mission"});
+    visit("distractor_radius_m", self.distractor_radius_m,
+          {.unit = "m", .min = 0.1, .max = 20, .source = "R34", .meaning = "mean radius of a distractor"});
+    visit("distractor_weight", self.distractor_weight,
+          {.min = 0, .max = 10, .source = "R34", .meaning = "weight of a visible distractor"});
+    visit("distractor_tilt_deg", self.distractor_tilt_deg,
+          {.unit = "deg",
+           .min = 0,
+           .max = 90,
+           .source = "R34",
+           .meaning = "camera tilt above which distractors mislead"});
+    visit.Nested("full", self.full);
+    visit.Nested("quantized", self.quantized);
+  }
+};
+
+}  // namespace ed3r

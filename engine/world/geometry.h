@@ -1,0 +1,46 @@
+// The solid part of a scene (terrain and trees baked into one triangle mesh), built once and shared read-only
+// by all missions: as a Bullet shape that the robot can touch, and as an Embree scene that rays can ask.
+//
+// Frame: x east, y north, z up, metres; the origin is the south-west corner at the lowest ground.
+// Threads: immutable after construction; every const member may be called from any thread.
+// Determinism: Embree is pinned to one instruction set, so a ray's answer does not depend on the CPU.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+class btCollisionShape;
+
+namespace ed3r {
+
+struct TriangleMesh {
+  std::vector<Eigen::Vector3f> vertices_m;
+  std::vector<Eigen::Vector3i> triangles;  // counter-clockwise seen from outside (terrain: from above)
+};
+
+class StaticGeometry {
+ public:
+  explicit StaticGeometry(TriangleMesh mesh);  // throws InternalError for an empty mesh or a bad index
+  ~StaticGeometry();
+  StaticGeometry(const StaticGeometry&) = delete;
+  StaticGeometry& operator=(const StaticGeometry&) = delete;
+
+  // Distance along a unit direction to the first surface, or +infinity when there is none within range_m.
+  double Distance(const Eigen::Vector3d& origin_m, const Eigen::Vector3d& direction, double range_m) const;
+
+  // Whether a surface lies between two points (1 cm short of either end).
+  bool Occluded(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const;
+
+  // The static shape for a Bullet world; owned by this object. Bullet does not modify it while stepping.
+  btCollisionShape* Shape() const;
+
+  const TriangleMesh& Mesh() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ed3r
