@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "engine/agents/action_ranges.h"
-#include "engine/mission/record.h"
+#include "engine/agents/decisions.h"
 
 namespace ed3r {
 

@@ -7,7 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/mission/record.h"
+#include "engine/agents/decisions.h"
+
 
 namespace ed3r {
 

@@ -1,7 +1,6 @@
 // What each agent may know (paper: State of the Environment). The mission fills these; an agent sees nothing else.
 #pragma once
 
-#include "engine/mission/record.h"
 #include "engine/robot/motion.h"
 
 namespace ed3r {
