@@ -56,7 +56,8 @@ class ElevationGrid {
  public:
   explicit ElevationGrid(const GridTerrainSpec& spec) : spec_(spec) {
     static constexpr const char* kDrivers[] = {"AAIGrid", "GTiff", nullptr};
-    dataset_.reset(GDALDataset::Open(spec.file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kDrivers));
+    dataset_.reset(GDALDataset::Open(spec.file.c_str(),
+                                     GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, kDrivers));
     if (!dataset_)
       Fail(fmt::format("not readable as an ESRI ASCII grid or a GeoTIFF ({})", QuietGdal::LastError()));
     CheckKind();

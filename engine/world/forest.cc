@@ -100,6 +100,13 @@ std::vector<Tree> Generate(const GeneratedForestSpec& spec, const Eigen::Vector3
 StemMap CropStand(const StemMapSpec& spec) {
   StemMap map = ReadStemMap(spec.file);
   const Eigen::Vector2d extent_m = spec.extent_m.value_or(map.size_m - spec.offset_m);
+  constexpr double kRoundingM = 1e-6;
+  const Eigen::Vector2d needed_m = spec.offset_m + extent_m;
+  if (extent_m.minCoeff() <= 0.0 || (map.size_m - needed_m).minCoeff() < -kRoundingM)
+    FailAt(spec.file_place,
+           fmt::format("forest.stem_map: '{}' is too small: offset_m + extent_m = [{:g}, {:g}] m; "
+                       "the stand measures [{:g}, {:g}] m",
+                       spec.file, needed_m.x(), needed_m.y(), map.size_m.x(), map.size_m.y()));
   const auto outside = [&](const Stem& stem) {
     const double x_m = stem.x_m - spec.offset_m.x();
     const double y_m = stem.y_m - spec.offset_m.y();
@@ -108,10 +115,7 @@ StemMap CropStand(const StemMapSpec& spec) {
   std::erase_if(map.stems, outside);
   if (map.stems.empty())
     FailAt(spec.file_place,
-           fmt::format(
-               "forest.stem_map: no tree of '{}' stands within offset_m and extent_m; the stand measures "
-               "{:.0f} x {:.0f} m",
-               spec.file, map.size_m.x(), map.size_m.y()));
+           fmt::format("forest.stem_map: no tree of '{}' stands within offset_m and extent_m", spec.file));
   for (Stem& stem : map.stems) {
     stem.x_m -= spec.offset_m.x();
     stem.y_m -= spec.offset_m.y();

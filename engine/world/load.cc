@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/world/bake.h"
 #include "engine/world/forest.h"
@@ -50,11 +54,17 @@ void CheckStart(const WorldSpec& spec, const Terrain& terrain) {
     FailAt(spec.start_place,
            fmt::format("start: a disc of {:g} m around [{:g}, {:g}] m leaves the area of {:g} x {:g} m",
                        start.radius_m, start.x_m, start.y_m, spec.size_m.x(), spec.size_m.y()));
-  // The highest ground of the disc's bounding square: no start may lie above the area.
-  double highest_m = 0.0;
-  for (double x = -start.radius_m; x <= start.radius_m; x += terrain.cell_m)
-    for (double y = -start.radius_m; y <= start.radius_m; y += terrain.cell_m)
-      highest_m = std::max(highest_m, terrain.HeightAt(start.x_m + x, start.y_m + y));
+  // The nodes around the disc bound its ground: no start may lie above the area.
+  const auto node = [&](double at_m, int last) {
+    return std::clamp(static_cast<int>(std::lround(at_m / terrain.cell_m)), 0, last);
+  };
+  float highest_m = 0.0f;
+  for (int row = node(start.y_m - start.radius_m - terrain.cell_m, terrain.rows - 1);
+       row <= node(start.y_m + start.radius_m + terrain.cell_m, terrain.rows - 1); ++row)
+    for (int column = node(start.x_m - start.radius_m - terrain.cell_m, terrain.columns - 1);
+         column <= node(start.x_m + start.radius_m + terrain.cell_m, terrain.columns - 1); ++column)
+      highest_m =
+          std::max(highest_m, terrain.height_m[static_cast<std::size_t>(row) * terrain.columns + column]);
   if (highest_m + start.height_max_m > spec.size_m.z())
     FailAt(spec.start_place,
            fmt::format("start: {:g} m above ground of {:.1f} m is above the area of {:g} m height",
