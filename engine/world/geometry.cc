@@ -19,8 +19,6 @@ namespace ed3r {
 namespace {
 
 constexpr double kOcclusionMarginM = 0.01;
-// Bullet's quantized tree keeps a triangle's index in 21 bits.
-constexpr std::size_t kMaxTriangles = std::size_t{1} << 21;
 
 // Both libraries read these buffers in place.
 static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float) && sizeof(Eigen::Vector3i) == 3 * sizeof(int));
@@ -28,7 +26,8 @@ static_assert(std::is_same_v<btScalar, float>, "Bullet must be built in single p
 
 void CheckMesh(const TriangleMesh& mesh) {
   ED3R_CHECK(!mesh.vertices_m.empty() && !mesh.triangles.empty(), "empty mesh");
-  ED3R_CHECK(mesh.triangles.size() < kMaxTriangles, fmt::format("{} triangles", mesh.triangles.size()));
+  ED3R_CHECK(mesh.triangles.size() <= StaticGeometry::kMaxTriangles,
+             fmt::format("{} triangles", mesh.triangles.size()));
   for (const Eigen::Vector3f& vertex : mesh.vertices_m)
     ED3R_CHECK(vertex.allFinite(), "a vertex is not finite");
   const int vertices = static_cast<int>(mesh.vertices_m.size());

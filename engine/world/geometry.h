@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -27,7 +28,11 @@ std::string_view RayInstructionSet();
 
 class StaticGeometry {
  public:
-  explicit StaticGeometry(TriangleMesh mesh);  // throws InternalError for an empty mesh or a bad index
+  // Bullet's quantized tree keeps a triangle's index in 21 bits.
+  static constexpr std::size_t kMaxTriangles = (std::size_t{1} << 21) - 1;
+
+  // Throws InternalError for a mesh that is empty or too large, or has a bad index.
+  explicit StaticGeometry(TriangleMesh mesh);
   ~StaticGeometry();
   StaticGeometry(const StaticGeometry&) = delete;
   StaticGeometry& operator=(const StaticGeometry&) = delete;

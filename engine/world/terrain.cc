@@ -1,7 +1,8 @@
-#include <algorithm>
-#include <cstddef>
+#include "engine/world/terrain.h"
 
-#include "engine/world/scene.h"
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 
 namespace ed3r {
 
@@ -19,6 +20,20 @@ double Terrain::HeightAt(double x_m, double y_m) const {
   const double north_east = height_m[at + columns + 1];
   return u >= v ? south_west + u * (south_east - south_west) + v * (north_east - south_east)
                 : south_west + v * (north_west - south_west) + u * (north_east - north_west);
+}
+
+Terrain FlatTerrain(const Eigen::Vector3d& size_m, double cell_m) {
+  Terrain terrain;
+  terrain.columns = static_cast<int>(std::lround(size_m.x() / cell_m)) + 1;
+  terrain.rows = static_cast<int>(std::lround(size_m.y() / cell_m)) + 1;
+  terrain.cell_m = cell_m;
+  terrain.height_m.assign(static_cast<std::size_t>(terrain.columns) * terrain.rows, 0.0f);
+  return terrain;
+}
+
+void PutLowestAtZero(Terrain& terrain) {
+  const float lowest = *std::min_element(terrain.height_m.begin(), terrain.height_m.end());
+  for (float& height : terrain.height_m) height -= lowest;
 }
 
 }  // namespace ed3r

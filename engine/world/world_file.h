@@ -1,0 +1,110 @@
+// World files (YAML): what a scene is made of, as its author wrote it. Reading checks keys, types and ranges;
+// Scene::Load then builds it and checks what depends on the ground. Lengths in metres, positions from the
+// area's south-west corner, east first.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/world/scene.h"
+#include "engine/world/text_place.h"
+
+namespace ed3r {
+
+// A mountain ridge along a line; noise bends it and cuts spurs and saddles into it.
+struct RidgeSpec {
+  std::vector<Eigen::Vector2d> crest_m;
+  double height_m = 0.0;      // above the hills that it stands on
+  double half_width_m = 0.0;  // from the crest to the foot
+};
+
+// Terrain from a seed: rolling hills, ridges on top, a rough surface over all.
+struct GeneratedTerrainSpec {
+  double hills_height_m = 30.0;
+  double hills_size_m = 220.0;  // from one hilltop to the next, about
+  double bend_m = 18.0;         // how far noise moves hills and ridges sideways
+  double spurs = 0.35;          // 0: even flanks; 1: deeply cut ones
+  double saddles = 0.25;        // largest share of a ridge's height that a saddle lacks
+  double roughness_m = 1.5;
+  std::vector<RidgeSpec> ridges;
+};
+
+// Terrain from a real elevation grid. The area's south-west corner lies offset_m from the centre of the
+// grid's south-west cell; extent_m of the grid is stretched to the area, heights are multiplied by
+// height_scale.
+struct GridTerrainSpec {
+  std::string file;  // as the program opens it
+  Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();
+  Eigen::Vector2d extent_m = Eigen::Vector2d::Zero();
+  double height_scale = 1.0;
+  TextPlace file_place, extent_place;
+};
+
+// Trees from a seed: one per cell of a jittered grid, save in clearings and on steep ground.
+struct GeneratedForestSpec {
+  double spacing_m = 8.0;
+  double cover = 0.85;  // share of the area that is forest
+  double clearing_size_m = 90.0;
+  Eigen::Vector2d height_m{8.0, 25.0};
+  Eigen::Vector2d crown_radius_m{1.5, 3.5};
+};
+
+// Trees from a stem map, a CSV of a real stand. A rectangle of the stand (offset_m from its south-west
+// corner, extent_m) is tiled over the area, every other tile mirrored; a stand is seldom a rectangle, so
+// choose one that it fills.
+struct StemMapSpec {
+  std::string file;
+  Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();
+  std::optional<Eigen::Vector2d> extent_m;  // none: all of the stand
+  double height_scale = 1.0;                // heights, crown depths and trunks
+  double crown_scale = 1.0;                 // crown radii
+  double min_height_m = 3.0;                // after scaling; lower trees are left out
+  double keep = 1.0;                        // share of the trees that stay, drawn from the seed
+  TextPlace file_place;
+};
+
+struct ForestSpec {
+  double slope_max = 0.85;  // rise over run; steeper ground is bare
+  double site_clear_m = 14.0;
+  double station_clear_m = 8.0;
+  double start_clear_m = 3.0;  // around the start disc
+  std::optional<GeneratedForestSpec> generated;
+  std::optional<StemMapSpec> stem_map;
+  TextPlace place;
+};
+
+// A named point on the ground, or at a height of its own.
+struct PointSpec {
+  std::string name;
+  Eigen::Vector2d at_m = Eigen::Vector2d::Zero();
+  std::optional<double> z_m;
+  double above_ground_m = 0.0;  // without z_m
+  bool known = false;
+  TextPlace place;
+};
+
+struct WorldSpec {
+  std::string file;
+  std::string name;
+  std::uint64_t seed = 0;
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
+  TextPlace size_place;
+  double cell_m = 2.0;
+  std::optional<GeneratedTerrainSpec> generated;
+  std::optional<GridTerrainSpec> grid;
+  std::optional<ForestSpec> forest;  // none: bare ground
+  std::vector<PointSpec> sites;
+  std::vector<PointSpec> base_stations;
+  StartArea start;
+  TextPlace start_place;
+  FireShape fire;
+};
+
+// Throws UserError: one line with file:line:column, the key, the value, what is allowed, the nearest known
+// key.
+WorldSpec ReadWorldFile(const std::string& file);
+
+}  // namespace ed3r
