@@ -1,7 +1,10 @@
 // The Bullet world of one mission: the shared static geometry and the robot as one rigid body.
 //
-// A fresh world per mission is what makes Bullet reproducible. Threads: one mission, one world, one thread;
-// different worlds may share one StaticGeometry. Units: SI; Bullet works in single precision inside.
+// A fresh world per mission is what makes Bullet reproducible; it is built lean (two bodies, pools of 16, a
+// broadphase for two proxies), because a default world costs a thousand times more to make than to step.
+// Threads: one mission, one world, one thread; worlds in different threads may share one StaticGeometry.
+// Units: SI; Bullet works in single precision inside, so a position at 500 m is good to 0.03 mm.
+// Errors: a state that is not finite throws InternalError.
 #pragma once
 
 #include <Eigen/Core>
