@@ -14,6 +14,7 @@ struct V {
   static F Load(const float* p) { return _mm256_loadu_ps(p); }
   static void Store(float* p, F v) { _mm256_storeu_ps(p, v); }
   static F Set1(float v) { return _mm256_set1_ps(v); }
+  static F Held(F v) { return v; }
   static F Fma(F a, F b, F c) { return _mm256_fmadd_ps(a, b, c); }
   // maxps returns its second operand for a NaN or two zeros: 0 > z ? 0 : z.
   static F Relu(F z) { return _mm256_max_ps(_mm256_setzero_ps(), z); }

@@ -14,6 +14,7 @@ struct V {
   static F Load(const float* p) { return *p; }
   static void Store(float* p, F v) { *p = v; }
   static F Set1(float v) { return v; }
+  static F Held(F v) { return v; }
   static F Fma(F a, F b, F c) { return __builtin_fmaf(a, b, c); }
   static F Relu(F z) { return 0.0f > z ? 0.0f : z; }
 };
