@@ -1,0 +1,125 @@
+#include "studies/metrics/metrics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/core/check.h"
+#include "studies/statistics/intervals.h"
+
+namespace ed3r {
+namespace {
+
+void CheckRecord(const ArmData& arm, const MissionRecord& m) {
+  const auto here = [&] { return fmt::format("arm {}, scenario {}", arm.name, m.scenario); };
+  ED3R_CHECK(NameOf(static_cast<Outcome>(m.outcome)) != "?", here());
+  ED3R_CHECK(m.offloads >= 0 && m.full_local >= 0 && m.quantized_local >= 0, here());
+  ED3R_CHECK(m.offloads + m.full_local + m.quantized_local == m.timesteps, here());
+  for (const std::int64_t count : {m.reliable_timesteps, m.random_motions, m.predicted_timesteps})
+    ED3R_CHECK(0 <= count && count <= m.timesteps, here());
+  for (const double size : {m.duration_s, m.movement_j, m.sensing_j, m.computation_j, m.transmission_j,
+                            m.total_j, m.reliable_scs_sum, m.absolute_reward_error_sum})
+    ED3R_CHECK(std::isfinite(size) && size >= 0, here());
+  // Equal but for rounding: the ledger adds timesteps in one order, this sum adds parts in another.
+  const double parts = m.movement_j + m.sensing_j + m.computation_j + m.transmission_j;
+  ED3R_CHECK(std::abs(parts - m.total_j) <= 1e-6 * (1 + m.total_j), here());
+}
+
+// What the missions contribute to one metric.
+struct Contributions {
+  std::vector<double> part, whole;
+};
+
+Contributions Collect(const MetricDefinition& metric, const std::vector<MissionRecord>& missions) {
+  Contributions all;
+  for (const MissionRecord& mission : missions) {
+    const double whole = metric.whole(mission);
+    if (whole == 0) continue;
+    all.part.push_back(metric.part(mission));
+    all.whole.push_back(whole);
+  }
+  return all;
+}
+
+double Sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+// 1 - MAE / max MAE of each mission (R29); all 1 where no prediction was off.
+std::vector<double> LookForward(const Contributions& all) {
+  std::vector<double> errors(all.part.size());
+  for (std::size_t i = 0; i < errors.size(); ++i) errors[i] = all.part[i] / all.whole[i];
+  const double worst = *std::max_element(errors.begin(), errors.end());
+  for (double& error : errors) error = worst > 0 ? 1 - error / worst : 1;
+  return errors;
+}
+
+Interval IntervalOf(Estimate estimate, const Contributions& all) {
+  switch (estimate) {
+    case Estimate::kMean:
+    case Estimate::kLookForward:
+      return MeanInterval(all.part);
+    case Estimate::kRate:
+      return RateInterval(std::llround(Sum(all.part)), static_cast<std::int64_t>(all.part.size()));
+    case Estimate::kShareOfTimesteps:
+      return ShareInterval(all.part, all.whole, ShareUnit::kTimestep);
+    case Estimate::kShareOfEnergy:
+      return ShareInterval(all.part, all.whole, ShareUnit::kMission);
+    case Estimate::kRatio:
+      return RatioInterval(all.part, all.whole);
+    case Estimate::kPercentile85:
+      return QuantileInterval(all.part, 85);
+    case Estimate::kMaximum:
+      return {};
+  }
+  return {};
+}
+
+double ValueOf(Estimate estimate, const Contributions& all) {
+  if (estimate == Estimate::kMaximum) return all.part.back();
+  if (estimate == Estimate::kPercentile85)
+    return all.part[QuantileRank(static_cast<std::int64_t>(all.part.size()), 85) - 1];
+  return Sum(all.part) / Sum(all.whole);
+}
+
+// Largest possible value; the smallest is 0 for all of them.
+double UpperLimit(const MetricDefinition& metric) {
+  return metric.unit == "%" ? 1.0 : std::numeric_limits<double>::infinity();
+}
+
+MetricValue Evaluate(const MetricDefinition& metric, const std::vector<MissionRecord>& missions) {
+  Contributions all = Collect(metric, missions);
+  MetricValue result;
+  result.n = static_cast<std::int64_t>(all.part.size());
+  if (result.n == 0) return result;
+  if (metric.estimate == Estimate::kLookForward) {
+    all.part = LookForward(all);
+    all.whole.assign(all.part.size(), 1.0);
+  }
+  if (metric.estimate == Estimate::kPercentile85 || metric.estimate == Estimate::kMaximum)
+    std::sort(all.part.begin(), all.part.end());
+  result.value = metric.scale * ValueOf(metric.estimate, all);
+  if (const Interval interval = IntervalOf(metric.estimate, all); interval.Exists()) {
+    // A small sample's t interval may leave what is possible.
+    result.lo = metric.scale * std::max(0.0, interval.lo);
+    result.hi = metric.scale * std::min(UpperLimit(metric), interval.hi);
+  }
+  return result;
+}
+
+}  // namespace
+
+ArmMetrics ComputeMetrics(const ArmData& arm) {
+  for (const MissionRecord& mission : arm.missions) CheckRecord(arm, mission);
+  ArmMetrics metrics{.stage = arm.stage,
+                     .name = arm.name,
+                     .missions = static_cast<std::int64_t>(arm.missions.size()),
+                     .failed = arm.failed,
+                     .missing = arm.missing,
+                     .values = {}};
+  for (const MetricDefinition& metric : MetricDefinitions())
+    metrics.values.push_back(Evaluate(metric, arm.missions));
+  return metrics;
+}
+
+}  // namespace ed3r

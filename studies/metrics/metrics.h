@@ -1,0 +1,38 @@
+// The metrics of one arm, with 95 % intervals.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/metrics/arm.h"
+#include "studies/metrics/definitions.h"
+
+namespace ed3r {
+
+// A value and its interval, in the metric's unit. NaN is "none": no value from an empty sample (or where no
+// network predicted), no interval from fewer than two missions or for a maximum.
+struct MetricValue {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double lo = std::numeric_limits<double>::quiet_NaN();
+  double hi = std::numeric_limits<double>::quiet_NaN();
+  std::int64_t n = 0;  // missions that the value rests on
+};
+
+struct ArmMetrics {
+  std::string stage, name;
+  std::int64_t missions = 0;  // flown; failed and missing ones as in ArmData
+  std::int64_t failed = 0, missing = 0;
+  std::vector<MetricValue> values;  // in the order of MetricDefinitions()
+
+  const MetricValue& operator[](std::string_view metric) const { return values[MetricIndex(metric)]; }
+};
+
+// Everything of MetricDefinitions() for the missions of `arm`, failed and successful ones alike (R9).
+// Pure. Checks every record first (ED3R_CHECK): counts within the timesteps, a known outcome, finite energies
+// whose parts sum up to the total.
+ArmMetrics ComputeMetrics(const ArmData& arm);
+
+}  // namespace ed3r

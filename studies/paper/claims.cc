@@ -1,0 +1,94 @@
+#include "studies/paper/claims.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "engine/core/check.h"
+#include "studies/paper/csv.h"
+
+namespace ed3r {
+namespace {
+
+const CsvRow kColumns = {"id",          "where", "strategy",   "metric",      "kind",
+                         "paper_value", "unit",  "comparison", "exact_words", "note"};
+
+std::optional<double> Number(const std::string& text) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return value;
+}
+
+double HalfUnit(const std::string& printed) {
+  const auto point = printed.find('.');
+  const auto decimals = point == std::string::npos ? 0 : printed.size() - point - 1;
+  return 0.5 * std::pow(10.0, -static_cast<double>(decimals));
+}
+
+bool Contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+// "share" rows are values too: the share of missions within ten minutes.
+std::optional<PaperValue> ValueOf(const Claim& claim) {
+  if (claim.kind != "value" && claim.kind != "share") return std::nullopt;
+  const auto number = Number(claim.paper_value);
+  if (!number) return std::nullopt;
+  PaperValue value;
+  value.value = *number;
+  value.half_unit = HalfUnit(claim.paper_value);
+  value.printed = claim.paper_value;
+  value.claim = claim.id;
+  value.approximate = Contains(claim.unit, "approx");
+  value.derived = Contains(claim.unit, "derived") || claim.comparison == "by construction";
+  return value;
+}
+
+int Rank(const Claim& claim, const PaperValue& value) {
+  if (value.derived) return 2;
+  return Contains(claim.where, "tab:") ? 0 : 1;
+}
+
+}  // namespace
+
+std::vector<Claim> ParseClaims(std::string_view csv, std::string_view name) {
+  const std::vector<CsvRow> rows = ParseCsv(csv, name);
+  if (rows.empty() || rows.front() != kColumns)
+    throw UserError(fmt::format("{}:1: expected the columns {}", name, fmt::join(kColumns, ",")));
+  std::vector<Claim> claims;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const CsvRow& row = rows[i];
+    claims.push_back({row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], row[9]});
+  }
+  return claims;
+}
+
+const std::vector<Claim>& PaperClaims() {
+  static const std::vector<Claim> claims = ParseClaims(ClaimsCsv(), "studies/paper/claims.csv");
+  return claims;
+}
+
+std::optional<PaperValue> FindPaperValue(const std::vector<Claim>& claims, std::string_view arm,
+                                         std::string_view metric) {
+  std::vector<PaperValue> found;
+  std::optional<PaperValue> best;
+  int best_rank = 0;
+  for (const Claim& claim : claims) {
+    if (claim.strategy != arm || claim.metric != metric) continue;
+    const auto value = ValueOf(claim);
+    if (!value) continue;
+    found.push_back(*value);
+    const int rank = Rank(claim, *value);
+    if (!best || rank < best_rank) best = value, best_rank = rank;
+  }
+  if (!best) return std::nullopt;
+  for (const PaperValue& other : found)
+    if (other.value != best->value)
+      best->elsewhere.push_back(fmt::format("{} ({})", other.printed, other.claim));
+  return best;
+}
+
+}  // namespace ed3r

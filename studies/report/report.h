@@ -1,0 +1,39 @@
+// The report of a run: its tables as text, CSV and JSON. Reads nothing itself; load.h reads a run's store.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "studies/metrics/arm.h"
+#include "studies/metrics/metrics.h"
+#include "studies/tables/result_table.h"
+
+namespace ed3r {
+
+// What a run holds.
+struct RunResults {
+  std::string name;      // of the sweep
+  std::string question;  // that the sweep asks; may be empty
+  std::vector<ArmData> arms;
+};
+
+struct Report {
+  std::string name, question;
+  std::vector<ArmMetrics> arms;
+  std::vector<Generalisation> generalisation;  // one per arm
+};
+
+Report MakeReport(const RunResults& results);
+
+// For a terminal of kTerminalWidth characters: heading, result table, generalisation table.
+std::string ReportText(const Report& report);
+
+// {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson}.
+nlohmann::ordered_json ReportJson(const Report& report);
+
+// Writes report.txt, report.json, metrics.csv and generalisation.csv into `dir`, which it makes if it has to;
+// each file is replaced whole or left as it was. Throws UserError when it cannot.
+void WriteReport(const Report& report, const std::string& dir);
+
+}  // namespace ed3r

@@ -1,0 +1,114 @@
+#include "studies/tables/data_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "studies/paper/csv.h"
+#include "studies/tables/paper_cell.h"
+
+namespace ed3r {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json NumberOrNull(double value) { return std::isnan(value) ? Json(nullptr) : Json(value); }
+std::string NumberOrEmpty(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
+
+Json ValueJson(const MetricValue& ours) {
+  return {{"mean", NumberOrNull(ours.value)},
+          {"lo", NumberOrNull(ours.lo)},
+          {"hi", NumberOrNull(ours.hi)},
+          {"n", ours.n}};
+}
+
+std::string ValueCsv(const MetricValue& ours) {
+  return fmt::format("{},{},{},{}", NumberOrEmpty(ours.value), NumberOrEmpty(ours.lo), NumberOrEmpty(ours.hi),
+                     ours.n);
+}
+
+struct Place {
+  const char* name;
+  const ArmMetrics Generalisation::*missions;
+};
+constexpr Place kPlaces[] = {{"known-site", &Generalisation::known_sites},
+                             {"unseen-site", &Generalisation::unseen_sites},
+                             {"known-base-station", &Generalisation::known_stations},
+                             {"unseen-base-station", &Generalisation::unseen_stations}};
+
+}  // namespace
+
+std::vector<std::string> UniqueArmNames(std::span<const ArmMetrics> arms) {
+  std::map<std::string, int> uses;
+  for (const ArmMetrics& arm : arms) ++uses[arm.name];
+  std::vector<std::string> names;
+  for (const ArmMetrics& arm : arms)
+    names.push_back(uses[arm.name] == 1 ? arm.name : arm.stage + '/' + arm.name);
+  return names;
+}
+
+Json ResultJson(std::span<const ArmMetrics> arms, const std::vector<Claim>& claims) {
+  const std::vector<std::string> names = UniqueArmNames(arms);
+  Json all = Json::object();
+  for (std::size_t a = 0; a < arms.size(); ++a) {
+    const ArmMetrics& arm = arms[a];
+    Json& entry = all[names[a]];
+    entry = {
+        {"stage", arm.stage}, {"missions", arm.missions}, {"failed", arm.failed}, {"missing", arm.missing}};
+    for (std::size_t i = 0; i < arm.values.size(); ++i) {
+      Json value = ValueJson(arm.values[i]);
+      const PaperCell paper = MakePaperCell(claims, arm, i);
+      value["paper"] = paper.value ? Json(paper.value->value) : Json(nullptr);
+      entry[std::string(MetricDefinitions()[i].name)] = value;
+    }
+  }
+  return {{"arms", all}};
+}
+
+std::string ResultCsv(std::span<const ArmMetrics> arms, const std::vector<Claim>& claims) {
+  std::string csv = "stage,arm,metric,value,lo,hi,n,paper\n";
+  for (const ArmMetrics& arm : arms) {
+    const std::string start = CsvField(arm.stage) + ',' + CsvField(arm.name) + ',';
+    csv += fmt::format("{0}missions,{1},,,{1},\n{0}failed,{2},,,{1},\n{0}missing,{3},,,{1},\n", start,
+                       arm.missions, arm.failed, arm.missing);
+    for (std::size_t i = 0; i < arm.values.size(); ++i) {
+      const PaperCell paper = MakePaperCell(claims, arm, i);
+      csv += fmt::format("{}{},{},{}\n", start, MetricDefinitions()[i].name, ValueCsv(arm.values[i]),
+                         paper.value ? paper.value->printed : "");
+    }
+  }
+  return csv;
+}
+
+std::string GeneralisationCsv(std::span<const Generalisation> arms) {
+  std::string csv = "stage,arm,place,metric,value,lo,hi,n\n";
+  for (const Generalisation& arm : arms)
+    for (const Place& place : kPlaces) {
+      const ArmMetrics& missions = arm.*place.missions;
+      for (std::size_t i = 0; i < missions.values.size(); ++i)
+        csv += fmt::format("{},{},{},{},{}\n", CsvField(missions.stage), CsvField(missions.name), place.name,
+                           MetricDefinitions()[i].name, ValueCsv(missions.values[i]));
+    }
+  return csv;
+}
+
+Json GeneralisationJson(std::span<const Generalisation> arms) {
+  std::vector<ArmMetrics> known;
+  for (const Generalisation& arm : arms) known.push_back(arm.known_sites);
+  const std::vector<std::string> names = UniqueArmNames(known);
+  Json all = Json::object();
+  for (std::size_t a = 0; a < arms.size(); ++a)
+    for (const Place& place : kPlaces) {
+      const ArmMetrics& missions = arms[a].*place.missions;
+      Json& entry = all[names[a]][place.name];
+      entry = {{"missions", missions.missions}};
+      for (std::size_t i = 0; i < missions.values.size(); ++i)
+        entry[std::string(MetricDefinitions()[i].name)] = ValueJson(missions.values[i]);
+    }
+  return all;
+}
+
+}  // namespace ed3r

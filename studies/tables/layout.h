@@ -1,0 +1,33 @@
+// Text in columns, for a terminal. Widths count characters, not bytes (UTF-8; every character that the tables
+// use is one cell wide).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace ed3r {
+
+constexpr int kTerminalWidth = 120;
+
+int DisplayWidth(std::string_view utf8);
+
+enum class Align { kLeft, kRight, kCentre };
+
+// `text` padded with spaces to `width`; longer text is left as it is.
+std::string Pad(std::string_view text, int width, Align align);
+
+// `count` times the character "─".
+std::string Rule(int count);
+
+// Lines of at most `width` characters, broken at spaces; the first starts with `first`, the others with as
+// many spaces. A single longer word is not broken. Ends with a line end.
+std::string Wrap(std::string_view text, std::string_view first, int width);
+
+// `text` without the spaces at the ends of its lines.
+std::string TrimLineEnds(std::string_view text);
+
+// "12.34" at the given number of decimals, fewer where the number would take more than five characters
+// ("139.9"); "–" for NaN.
+std::string FormatValue(double value, int decimals);
+
+}  // namespace ed3r

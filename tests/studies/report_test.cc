@@ -1,0 +1,82 @@
+#include "studies/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "engine/core/check.h"
+#include "tests/studies/five_missions.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+RunResults OneArm() { return {.name = "paper", .question = "Does it hold?", .arms = {FiveMissions()}}; }
+
+std::string Content(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+class ReportFilesTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(dir_);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+  fs::path dir_;
+};
+
+TEST(ReportTest, TextHasItsParts) {
+  const std::string text = ReportText(MakeReport(OneArm()));
+  EXPECT_TRUE(text.starts_with("paper\nDoes it hold?\n\nStage online\n"));
+  EXPECT_NE(text.find("success (MSR)"), std::string::npos);
+  EXPECT_NE(text.find("base station unseen"), std::string::npos);
+}
+
+TEST(ReportTest, RunWithoutMissionsSaysSo) {
+  EXPECT_EQ(ReportText(MakeReport({.name = "empty", .question = "", .arms = {}})), "empty\n\nNo missions.\n");
+}
+
+TEST(ReportTest, JsonHasArmsAndGeneralisation) {
+  const auto json = nlohmann::json::parse(ReportJson(MakeReport(OneArm())).dump());
+  EXPECT_EQ(json.at("name"), "paper");
+  EXPECT_EQ(json.at("arms").at("ed3r-75").at("msr_pct").at("mean"), 60);
+  EXPECT_EQ(json.at("generalisation").at("ed3r-75").at("known-site").at("missions"), 2);
+}
+
+TEST(ReportTest, IsTheSameEveryTime) {
+  EXPECT_EQ(ReportText(MakeReport(OneArm())), ReportText(MakeReport(OneArm())));
+  EXPECT_EQ(ReportJson(MakeReport(OneArm())).dump(), ReportJson(MakeReport(OneArm())).dump());
+}
+
+TEST_F(ReportFilesTest, AreWrittenAndReplaced) {
+  const Report report = MakeReport(OneArm());
+  for (int round = 0; round < 2; ++round) {
+    WriteReport(report, (dir_ / "deep").string());
+    EXPECT_EQ(Content(dir_ / "deep/report.txt"), ReportText(report));
+    EXPECT_EQ(nlohmann::ordered_json::parse(Content(dir_ / "deep/report.json")), ReportJson(report));
+    EXPECT_TRUE(Content(dir_ / "deep/metrics.csv").starts_with("stage,arm,metric,value,lo,hi,n,paper\n"));
+    EXPECT_TRUE(
+        Content(dir_ / "deep/generalisation.csv").starts_with("stage,arm,place,metric,value,lo,hi,n\n"));
+  }
+  int files = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(dir_ / "deep")) ++files;
+  EXPECT_EQ(files, 4);  // nothing unfinished is left behind
+}
+
+TEST_F(ReportFilesTest, UnwritablePlacesAreUserErrors) {
+  fs::create_directories(dir_ / "report.txt");  // a folder in the file's place
+  std::ofstream(dir_ / "report.txt" / "x") << "x";
+  EXPECT_THROW(WriteReport(MakeReport(OneArm()), dir_.string()), UserError);
+  std::ofstream(dir_ / "file") << "x";
+  EXPECT_THROW(WriteReport(MakeReport(OneArm()), (dir_ / "file" / "below").string()), UserError);
+}
+
+}  // namespace
+}  // namespace ed3r
