@@ -3,11 +3,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <vector>
 
+#include "engine/agents/context.h"
 #include "engine/agents/early_completion.h"
-#include "engine/agents/strategy.h"
+#include "engine/agents/region_memory.h"
 #include "engine/agents/views.h"
-#include "engine/config/config.h"
 
 namespace ed3r {
 
@@ -17,22 +18,33 @@ struct MotionDecision {
   MotionRule rule = MotionRule::kRandom;
   ConfidenceBand band = ConfidenceBand::kNone;
   double epsilon = 1.0;
-  double predicted_reward = std::numeric_limits<double>::quiet_NaN();  // where no network was asked
+  double predicted_reward = std::numeric_limits<double>::quiet_NaN();  // of the command; NaN without a network
+};
+
+// The candidates of one greedy decision, for `ed3r explain`.
+struct CandidateTrace {
+  std::vector<MotionCommand> commands;
+  std::vector<double> rewards;  // predicted
+  std::vector<int> admitted;    // indices that region avoidance left; empty where it left all
+  int chosen = -1;
 };
 
 class RemoteController {
  public:
-  RemoteController(const Config& config, const Strategy& strategy, std::uint64_t seed,
-                   std::uint32_t scenario);
+  explicit RemoteController(const AgentContext& context);
 
-  MotionDecision ChooseMotion(const RcView& view, std::uint32_t timestep);
+  // To be called once per timestep, k = 1, 2, ... `trace`, where given, receives the candidates of a greedy decision.
+  MotionDecision ChooseMotion(const RcView& view, std::uint32_t timestep, CandidateTrace* trace = nullptr);
 
  private:
-  const Config& config_;
-  const Strategy& strategy_;
-  std::uint64_t seed_;
-  std::uint32_t scenario_;
+  void ChooseGreedily(const RcView& view, const ActionRanges& ranges, std::uint32_t timestep, MotionDecision& decision,
+                      CandidateTrace* trace);
+  double Predict(const RcView& view, const MotionCommand& command);
+
+  const AgentContext context_;
   EarlyCompletion completion_;
+  RegionMemory regions_;
+  Model::Workspace workspace_;
 };
 
 }  // namespace ed3r

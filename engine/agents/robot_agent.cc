@@ -1,7 +1,9 @@
 #include "engine/agents/robot_agent.h"
 
+#include <algorithm>
 #include <array>
 
+#include "engine/agents/features.h"
 #include "engine/core/check.h"
 #include "engine/core/random.h"
 
@@ -20,14 +22,45 @@ Execution DrawAllowed(const AllowedExecutions& allowed, Stream& stream) {
 
 }  // namespace
 
-RobotAgent::RobotAgent(const Config& config, const Strategy& strategy, std::uint64_t seed,
-                       std::uint32_t scenario)
-    : config_(config), strategy_(strategy), seed_(seed), scenario_(scenario) {}
+RobotAgent::RobotAgent(const AgentContext& context) : context_(context) {
+  ED3R_CHECK(context.strategy.execution != ExecutionPolicy::kNetwork || context.strategy.allowed.Count() == 1 ||
+                 context.networks.robot != nullptr,
+             "the strategy asks the robot's network, and there is none");
+}
 
-ExecutionDecision RobotAgent::ChooseExecution(const RobotView& view, std::uint32_t timestep) const {
-  Stream stream(seed_, scenario_, Purpose::kExecution, timestep);
-  if (strategy_.execution == ExecutionPolicy::kRules) return DecideByRules(config_.rbs, view, stream);
-  return {.execution = DrawAllowed(strategy_.allowed, stream), .random = strategy_.allowed.Count() > 1};
+ExecutionDecision RobotAgent::ChooseExecution(const RobotView& view, double epsilon, std::uint32_t timestep) {
+  const AllowedExecutions& allowed = context_.strategy.allowed;
+  Stream stream(context_.seed, context_.scenario, Purpose::kExecution, timestep);
+  if (context_.strategy.execution == ExecutionPolicy::kRules) return DecideByRules(context_.config.rbs, view, stream);
+  if (allowed.Count() == 1) return {.execution = DrawAllowed(allowed, stream)};
+  const bool explores =
+      context_.strategy.execution == ExecutionPolicy::kRandom ||
+      Stream(context_.seed, context_.scenario, Purpose::kRobotExploration, timestep).Uniform() < epsilon;
+  if (explores) return {.execution = DrawAllowed(allowed, stream), .random = true};
+
+  const std::array<double, 3> rewards = PredictAll(view);
+  ExecutionDecision decision;
+  decision.predicted_reward = -std::numeric_limits<double>::infinity();
+  for (const Execution execution : kExecutions) {
+    const double reward = rewards[static_cast<std::size_t>(execution)];
+    if (!allowed.Allows(execution) || reward <= decision.predicted_reward) continue;
+    decision.execution = execution;
+    decision.predicted_reward = reward;
+  }
+  return decision;
+}
+
+std::array<double, 3> RobotAgent::PredictAll(const RobotView& view) {
+  std::array<double, 3> rewards;
+  rewards.fill(std::numeric_limits<double>::quiet_NaN());
+  if (context_.networks.robot == nullptr) return rewards;
+  std::array<float, 3 * std::tuple_size_v<RobotAction>> rows{};
+  for (const Execution execution : kExecutions) {
+    const RobotAction action = ActionOf(execution);
+    std::copy(action.begin(), action.end(), rows.begin() + static_cast<std::ptrdiff_t>(execution) * action.size());
+  }
+  context_.networks.robot->Best(StateOf(view), rows, rewards, workspace_);
+  return rewards;
 }
 
 ExecutionDecision DecideByRules(const RbsConfig& rbs, const RobotView& view, Stream& stream) {

@@ -48,17 +48,23 @@ bool AllowedExecutions::Allows(Execution execution) const {
 
 std::span<const Strategy> Strategies() { return kStrategies; }
 
-const Strategy& FindStrategy(std::string_view name) {
+std::string CheckStrategyName(std::string_view name) {
   std::vector<std::string> names;
-  for (const Strategy& strategy : kStrategies) {
-    if (strategy.name == name) return strategy;
-    names.emplace_back(strategy.name);
-  }
   std::string list;
-  for (const std::string& known : names) list += (list.empty() ? "" : " | ") + known;
+  for (const Strategy& strategy : kStrategies) {
+    if (strategy.name == name) return "";
+    names.emplace_back(strategy.name);
+    list += (list.empty() ? "" : " | ") + names.back();
+  }
   const std::string nearest = NearestWord(name, names);
-  throw UserError(fmt::format("mission.strategy: '{}' is not allowed; allowed: {}{}", name, list,
-                              nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest)));
+  return fmt::format("mission.strategy: '{}' is not allowed; allowed: {}{}", name, list,
+                     nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
+}
+
+const Strategy& FindStrategy(std::string_view name) {
+  for (const Strategy& strategy : kStrategies)
+    if (strategy.name == name) return strategy;
+  throw UserError(CheckStrategyName(name));
 }
 
 }  // namespace ed3r

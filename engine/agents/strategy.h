@@ -37,7 +37,10 @@ struct Strategy {
 
 std::span<const Strategy> Strategies();
 
-// Throws UserError that lists the names for an unknown one.
+// "" for a known name, else a clause that lists the names and the nearest one.
+std::string CheckStrategyName(std::string_view name);
+
+// Throws UserError with that clause for an unknown name.
 const Strategy& FindStrategy(std::string_view name);
 
 }  // namespace ed3r

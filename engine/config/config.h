@@ -8,6 +8,7 @@
 #include "engine/config/mission.h"
 #include "engine/config/perception.h"
 #include "engine/config/robot.h"
+#include "engine/config/training.h"
 
 namespace ed3r {
 
@@ -30,6 +31,7 @@ struct Config {
   PerceptionConfig perception;
   AgentsConfig agents;
   RbsConfig rbs;
+  TrainingConfig training;
   OperatingPoint point;
 
   template <class Self, class Visitor>
@@ -44,6 +46,7 @@ struct Config {
     visit.Nested("perception", self.perception);
     visit.Nested("agents", self.agents);
     visit.Nested("rbs", self.rbs);
+    visit.Nested("training", self.training);
     constexpr std::string_view kSource = "ed3r physics only";
     visit("cpu.frequency_hz", self.point.cpu_frequency_hz,
           {.unit = "Hz",

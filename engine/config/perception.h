@@ -21,9 +21,9 @@ struct EnumNames<PerceptionTier> {
 
 // Response of one detection model.
 struct ResponseConfig {
-  double half_signal = 0.002;
+  double half_signal = 0.00033;
   double slope = 4.0;
-  double ceiling = 0.99;
+  double ceiling = 0.97;
   double view_sigma = 0.5;
   double frame_sigma = 0.3;
 
@@ -64,13 +64,13 @@ struct PerceptionConfig {
   double fire_weight = 1.0;
   double smoke_weight = 0.35;
   double haze_range_m = 600.0;
-  double distractors_per_km2 = 120.0;
+  double distractors_per_km2 = 150.0;
   double distractor_radius_m = 2.5;
   double distractor_weight = 0.5;
   double distractor_tilt_deg = 50.0;
   ResponseConfig full;
   ResponseConfig quantized{
-      .half_signal = 0.004, .slope = 3.0, .ceiling = 0.93, .view_sigma = 0.7, .frame_sigma = 0.6};
+      .half_signal = 0.00066, .slope = 3.0, .ceiling = 0.93, .view_sigma = 0.7, .frame_sigma = 0.6};
 
   template <class Self, class Visitor>
   static void Describe(Self& self, Visitor&& visit) {

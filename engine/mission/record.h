@@ -56,6 +56,7 @@ struct TimestepRecord {
 
 struct MissionRecord {
   std::int64_t scenario = 0, site = 0, base_station = 0;
+  std::int64_t network = -1;  // which of its arm's training seeds; -1 without networks
   std::int64_t site_known = 0, base_station_known = 0;
   std::int64_t outcome = 0;  // Outcome
   std::int64_t timesteps = 0;
@@ -70,7 +71,7 @@ struct MissionRecord {
   std::int64_t random_motions = 0;  // timesteps with a random RC action (R20)
   double reward_sum = 0, absolute_reward_error_sum = 0;
   std::int64_t predicted_timesteps = 0;  // timesteps with an RC prediction (R29)
-  double start_x_m = 0, start_y_m = 0, start_z_m = 0, start_yaw_rad = 0;
+  double start_x_m = 0, start_y_m = 0, start_z_m = 0, start_yaw_rad = 0, start_rc_distance_m = 0;
 
   std::vector<TimestepRecord> steps;  // stored in a table of their own
 
@@ -108,7 +109,7 @@ void TimestepRecord::Describe(Self& s, Visitor&& visit) {
 
 template <class Self, class Visitor>
 void MissionRecord::Describe(Self& s, Visitor&& visit) {
-  visit("scenario", s.scenario), visit("site", s.site), visit("base_station", s.base_station);
+  visit("scenario", s.scenario), visit("site", s.site), visit("base_station", s.base_station), visit("network", s.network);
   visit("site_known", s.site_known), visit("base_station_known", s.base_station_known),
       visit("outcome", s.outcome);
   visit("timesteps", s.timesteps), visit("duration_s", s.duration_s), visit("movement_j", s.movement_j);
@@ -123,7 +124,7 @@ void MissionRecord::Describe(Self& s, Visitor&& visit) {
   visit("reward_sum", s.reward_sum), visit("absolute_reward_error_sum", s.absolute_reward_error_sum);
   visit("predicted_timesteps", s.predicted_timesteps), visit("start_x_m", s.start_x_m),
       visit("start_y_m", s.start_y_m);
-  visit("start_z_m", s.start_z_m), visit("start_yaw_rad", s.start_yaw_rad);
+  visit("start_z_m", s.start_z_m), visit("start_yaw_rad", s.start_yaw_rad), visit("start_rc_distance_m", s.start_rc_distance_m);
 }
 
 }  // namespace ed3r

@@ -5,13 +5,12 @@
 //   base: paper_base.yaml                    optional: another sweep file, merged underneath
 //   missions: 850                            per arm; in a stage, or here for all stages that fly
 //   seed: 20260101                           64 bits; 0 when nobody says
-//   set: {mission.world: worlds/ridges.yaml} fixed values; `ed3r params` lists the keys; nested maps work,
-//   too sweep:                                   axes, see axis.h; `strategy` is short for mission.strategy
+//   set: {mission.world: worlds/ridges.yaml} fixed values; `ed3r params` lists the keys; nested maps work too
+//   sweep:                                   axes, see axis.h; `strategy` is short for mission.strategy
 //     strategy: [rbs, ed3r]
 //     agents.eta_min: [0.65, 0.75, 0.85]
 //   where: [strategy == ed3r or agents.eta_min == 0.75]      all must hold, see condition.h
-//   stages:                                  optional; without it there is one, "online", with all of the
-//   above
+//   stages:                                  optional; without it there is one, "online", with all of the above
 //     - {name: warmup, missions: 2040, set: {strategy: random}}
 //     - {name: training, kind: train, after: warmup}
 //     - {name: online, after: [training]}

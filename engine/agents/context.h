@@ -1,0 +1,32 @@
+// What an agent of one mission is made from.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "engine/agents/strategy.h"
+#include "engine/config/config.h"
+#include "engine/rfnn/model.h"
+
+namespace ed3r {
+
+// Trained networks, shared read-only; null where a strategy asks none.
+struct Networks {
+  const Model* rc = nullptr;
+  const Model* robot = nullptr;
+};
+
+struct AgentContext {
+  const Config& config;
+  const Strategy& strategy;
+  Networks networks;
+  Eigen::Vector3d size_m;  // of the searched area, for the regions
+  std::uint64_t seed = 0;
+  std::uint32_t scenario = 0;
+  double epsilon = 1.0;  // of this mission where the Algorithm forces none (R20)
+};
+
+// max(epsilon_min, decay^mission) for network strategies, 1 for those that walk at random (R20).
+double EpsilonOfMission(const AgentsConfig& agents, const Strategy& strategy, int mission);
+
+}  // namespace ed3r

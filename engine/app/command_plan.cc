@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "engine/agents/strategy.h"
+#include "engine/app/commands.h"
+#include "engine/app/sweep_arguments.h"
+#include "engine/robot/energy.h"
+
+namespace ed3r {
+namespace {
+
+// Simulated over wall seconds per core of this engine on its reference machine (2 cores of an EPYC 9xx4 server); only
+// for the estimate that `ed3r plan` prints.
+constexpr double kRealTimePerCore = 3000.0;
+// Mean length of a mission that may end early (paper: RBS).
+constexpr double kEarlyCompletionS = 280.0;
+
+struct Options {
+  SweepArguments sweep;
+  bool json = false;
+};
+
+// A mission without early completion lasts until the battery is empty.
+double ExpectedSimulatedS(const Arm& arm) {
+  const Config& config = arm.config;
+  if (FindStrategy(config.mission.strategy).early_completion && config.agents.early_completion)
+    return kEarlyCompletionS;
+  return config.robot.BatteryJ() /
+         PaperMovementPower(config.robot, config.environment, config.energy).hover_w;
+}
+
+double ExpectedWallS(const Stage& stage, int threads) {
+  double simulated_s = 0.0;
+  for (const Arm& arm : stage.arms) simulated_s += stage.missions * ExpectedSimulatedS(arm);
+  return simulated_s / kRealTimePerCore / threads;
+}
+
+void PrintJson(const SweepPlan& plan, int threads) {
+  nlohmann::ordered_json object = {
+      {"name", plan.name}, {"question", plan.question}, {"seed", plan.seed}, {"missions", plan.Missions()}};
+  for (const Stage& stage : plan.stages) {
+    nlohmann::ordered_json arms = nlohmann::ordered_json::array();
+    for (const Arm& arm : stage.arms) {
+      nlohmann::ordered_json settings = nlohmann::ordered_json::object();
+      for (const auto& [key, value] : arm.settings) settings[key] = value;
+      arms.push_back({{"name", arm.name}, {"settings", settings}});
+    }
+    object["stages"].push_back({{"name", stage.name},
+                                {"kind", stage.kind == StageKind::kTrain ? "train" : "fly"},
+                                {"after", stage.after},
+                                {"missions_per_arm", stage.missions},
+                                {"expected_s", ExpectedWallS(stage, threads)},
+                                {"arms", arms}});
+  }
+  fmt::print("{}\n", object.dump(2));
+}
+
+void PrintText(const SweepPlan& plan, int threads) {
+  fmt::print("{}: {}\nseed {}, {} missions\n", plan.name, plan.question, plan.seed, plan.Missions());
+  for (const Stage& stage : plan.stages) {
+    fmt::print("\nstage {}", stage.name);
+    for (std::size_t i = 0; i < stage.after.size(); ++i)
+      fmt::print("{}{}", i == 0 ? " after " : ", ", stage.after[i]);
+    fmt::print(": {} arms x {} missions, about {:.1f} min on {} threads\n", stage.arms.size(), stage.missions,
+               ExpectedWallS(stage, threads) / 60.0, threads);
+    for (const Arm& arm : stage.arms) {
+      std::string settings;
+      for (const auto& [key, value] : arm.settings) settings += fmt::format("  {}={}", key, value);
+      fmt::print("  {:<14}{}\n", arm.name, settings);
+    }
+  }
+}
+
+}  // namespace
+
+Command AddPlan(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* parser =
+      program.add_subcommand("plan", "Stages, arms, missions and expected time of a sweep; flies nothing");
+  options->sweep.AddTo(*parser);
+  parser->add_flag("--json", options->json, "Print JSON");
+  return {parser, [options] {
+            const SweepPlan plan = options->sweep.Load();
+            const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+            options->json ? PrintJson(plan, threads) : PrintText(plan, threads);
+            return kDone;
+          }};
+}
+
+}  // namespace ed3r

@@ -1,0 +1,119 @@
+// Commands that read run directories: status, report, digest, merge.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "engine/app/commands.h"
+#include "engine/store/digest.h"
+#include "engine/store/merge.h"
+#include "engine/store/reader.h"
+#include "studies/report/load.h"
+#include "studies/report/report.h"
+
+namespace ed3r {
+namespace {
+
+struct DirOptions {
+  std::string dir;
+  bool json = false;
+};
+
+std::shared_ptr<DirOptions> AddDirOptions(CLI::App& parser) {
+  auto options = std::make_shared<DirOptions>();
+  parser.add_option("DIR", options->dir, "Run directory")->required();
+  parser.add_flag("--json", options->json, "Print JSON");
+  return options;
+}
+
+void PrintStatusJson(ResultReader& reader) {
+  nlohmann::ordered_json object = {{"name", reader.Layout().name}, {"arms", nlohmann::ordered_json::array()}};
+  for (const ArmStatus& arm : reader.Status())
+    object["arms"].push_back({{"stage", arm.stage},
+                              {"arm", arm.arm},
+                              {"planned", arm.planned},
+                              {"done", arm.done},
+                              {"failed", arm.failed},
+                              {"missing", arm.missing}});
+  object["failures"] = nlohmann::ordered_json::array();
+  for (const FailedMission& failure : reader.Failures())
+    object["failures"].push_back({{"mission", reader.Layout().Describe(failure.id)},
+                                  {"scenario", failure.scenario},
+                                  {"seed", failure.seed},
+                                  {"message", failure.message}});
+  fmt::print("{}\n", object.dump(2));
+}
+
+void PrintStatus(ResultReader& reader) {
+  fmt::print("{:<12} {:<28} {:>8} {:>8} {:>8} {:>8}\n", "stage", "arm", "planned", "done", "failed",
+             "missing");
+  for (const ArmStatus& arm : reader.Status())
+    fmt::print("{:<12} {:<28} {:>8} {:>8} {:>8} {:>8}\n", arm.stage, arm.arm, arm.planned, arm.done,
+               arm.failed, arm.missing);
+  for (const FailedMission& failure : reader.Failures())
+    fmt::print("failed: {} (scenario {}, seed {}): {}\n", reader.Layout().Describe(failure.id),
+               failure.scenario, failure.seed, failure.message);
+}
+
+}  // namespace
+
+Command AddStatus(CLI::App& program) {
+  CLI::App* parser =
+      program.add_subcommand("status", "Done, failed and missing missions of a run, while it runs or after");
+  const auto options = AddDirOptions(*parser);
+  return {parser, [options] {
+            ResultReader reader(options->dir);
+            options->json ? PrintStatusJson(reader) : PrintStatus(reader);
+            return kDone;
+          }};
+}
+
+Command AddReport(CLI::App& program) {
+  CLI::App* parser = program.add_subcommand(
+      "report", "Result tables of a run beside the paper's values; also writes them to DIR/report");
+  const auto options = AddDirOptions(*parser);
+  return {parser, [options] {
+            const Report report = MakeReport(LoadRun(options->dir));
+            WriteReport(report, options->dir + "/report");
+            if (options->json)
+              fmt::print("{}\n", ReportJson(report).dump(2));
+            else
+              fmt::print("{}", ReportText(report));
+            return kDone;
+          }};
+}
+
+Command AddDigest(CLI::App& program) {
+  CLI::App* parser = program.add_subcommand(
+      "digest", "One SHA-256 over all stored results, the same however they were flown");
+  const auto options = AddDirOptions(*parser);
+  return {parser, [options] {
+            ResultReader reader(options->dir);
+            const std::string digest = DigestOf(reader);
+            if (options->json)
+              fmt::print("{}\n", nlohmann::ordered_json({{"sha256", digest}}).dump(2));
+            else
+              fmt::print("{}\n", digest);
+            return kDone;
+          }};
+}
+
+Command AddMerge(CLI::App& program) {
+  struct Options {
+    std::string out;
+    std::vector<std::string> dirs;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* parser =
+      program.add_subcommand("merge", "Joins shards into one run directory; refuses conflicting records");
+  parser->add_option("OUT", options->out, "Run directory to make or to add to")->required();
+  parser->add_option("DIR", options->dirs, "Run directories to join")->required();
+  return {parser, [options] {
+            const MergeSummary summary = MergeStores(options->out, options->dirs);
+            fmt::print("{}: {} missions added, {} were there already, {} failed\n", options->out,
+                       summary.added, summary.present, summary.failed);
+            return kDone;
+          }};
+}
+
+}  // namespace ed3r

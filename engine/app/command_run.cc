@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "engine/app/commands.h"
+#include "engine/app/machine.h"
+#include "engine/app/sweep_arguments.h"
+#include "engine/core/interrupt.h"
+#include "engine/schedule/sweep_runner.h"
+#include "studies/report/load.h"
+#include "studies/report/report.h"
+
+namespace ed3r {
+namespace {
+
+struct Options {
+  SweepArguments sweep;
+  std::string out;
+  std::string cache = "results/cache";
+  int threads = 0;
+  std::string shard = "1/1";
+  bool quiet = false;
+};
+
+// One line on what this session did, with the real-time factor per core.
+void Tell(const SweepSummary& summary, const std::string& dir) {
+  const RunSummary& flown = summary.flown;
+  fmt::print("{}: {} missions stored", dir, summary.stored_before + flown.stored);
+  if (summary.stored_before > 0) fmt::print(" ({} before)", summary.stored_before);
+  if (flown.failed > 0) fmt::print(", {} failed", flown.failed);
+  if (flown.stored > 0)
+    fmt::print("; {:.1f} simulated hours in {:.1f} s on {} threads: {:.0f} x real time per core",
+               flown.simulated_s / 3600, flown.wall_s, flown.threads,
+               flown.simulated_s / flown.wall_s / flown.threads);
+  fmt::print("\n");
+  for (const ShelvedNetwork& network : summary.networks) {
+    const TrainingReport& report = network.model->data().report;
+    fmt::print("network {}: {} epochs, best {}; R2 train {:.3f}, validation {:.3f}, held out {:.3f}; {}\n", network.name,
+               report.curve.size(), report.best_epoch, report.train.r2, report.validation.r2, report.test.r2, network.file);
+  }
+  if (!summary.waiting_stage.empty())
+    fmt::print("stage {} waits: missions that it builds on are missing or failed\n", summary.waiting_stage);
+}
+
+int Run(const Options& options) {
+  const SweepPlan plan = options.sweep.Load();
+  const Shard shard = ParseShard(options.shard);
+  ThreadsFor(options.threads);  // refused before worlds are built
+  const Worlds worlds = LoadWorlds(plan);
+  InstallInterruptHandler();
+
+  SweepOptions sweep;
+  sweep.dir = options.out.empty() ? DefaultRunDir(plan) : options.out;
+  sweep.cache_dir = options.cache;
+  sweep.shard = shard;
+  sweep.schedule.threads = options.threads;
+  sweep.schedule.stop = &InterruptFlag();
+  sweep.schedule.quiet = options.quiet;
+  sweep.notes = DescribeMachine();
+  const SweepSummary summary = RunSweep(plan, worlds, sweep);
+
+  if (!options.quiet) {
+    if (!summary.flown.interrupted) fmt::print("{}\n", ReportText(MakeReport(LoadRun(sweep.dir))));
+    Tell(summary, sweep.dir);
+  }
+  if (summary.flown.interrupted) {
+    fmt::print(stderr, "interrupted: what is stored is kept; the same command continues\n");
+    return kInterrupted;
+  }
+  return summary.flown.failed > 0 ? kMissionsFailed : kDone;
+}
+
+}  // namespace
+
+Command AddRun(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* parser = program.add_subcommand(
+      "run", "Flies a sweep and prints its table; the same command again continues where it stopped");
+  options->sweep.AddTo(*parser);
+  parser->add_option("--out", options->out, "Run directory; default results/runs/<sweep name>");
+  parser->add_option("--cache", options->cache, "Where trained networks are kept for all sweeps; default results/cache");
+  parser->add_option("--threads", options->threads, "Threads; default all processors");
+  parser->add_option("--shard", options->shard, "I/N: fly the I-th of N parts; 'ed3r merge' joins them");
+  parser->add_flag("--quiet", options->quiet, "Neither progress nor table");
+  return {parser, [options] { return Run(*options); }};
+}
+
+}  // namespace ed3r

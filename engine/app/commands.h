@@ -1,0 +1,35 @@
+// The commands of ed3r. Each adds its options to the program and returns the exit status when it is the one
+// chosen: 0 done, 1 something failed inside, 2 bad input, 3 finished with failed missions, 130 interrupted.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <vector>
+
+namespace ed3r {
+
+using CommandRun = std::function<int()>;
+
+struct Command {
+  CLI::App* parser = nullptr;
+  CommandRun run;
+};
+
+Command AddRun(CLI::App& program);
+Command AddPlan(CLI::App& program);
+Command AddStatus(CLI::App& program);
+Command AddReport(CLI::App& program);
+Command AddDigest(CLI::App& program);
+Command AddMerge(CLI::App& program);
+Command AddParams(CLI::App& program);
+Command AddPhysics(CLI::App& program);
+Command AddWorld(CLI::App& program);
+Command AddDoctor(CLI::App& program);
+
+constexpr int kDone = 0;
+constexpr int kFailedInside = 1;
+constexpr int kBadInput = 2;
+constexpr int kMissionsFailed = 3;
+constexpr int kInterrupted = 130;
+
+}  // namespace ed3r

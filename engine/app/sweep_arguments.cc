@@ -1,0 +1,47 @@
+#include "engine/app/sweep_arguments.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <optional>
+
+#include "engine/agents/strategy.h"
+#include "engine/core/check.h"
+#include "engine/sweep/sweep_file.h"
+
+namespace ed3r {
+namespace {
+
+template <class Integer>
+std::optional<Integer> ParseOption(const char* option, const std::string& text, Integer min, Integer max) {
+  if (text.empty()) return std::nullopt;
+  Integer value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < min || value > max)
+    throw UserError(fmt::format("{}: '{}' is not allowed; allowed: {} .. {}", option, text, min, max));
+  return value;
+}
+
+}  // namespace
+
+void SweepArguments::AddTo(CLI::App& parser) {
+  parser.add_option("SWEEP", file, "Sweep file (YAML)")->required();
+  parser.add_option("--set", set, "KEY=VALUE; wins over the file; 'ed3r params' lists the keys")
+      ->allow_extra_args(false);
+  parser.add_option("--seed", seed, "Seed in place of the file's");
+  parser.add_option("--missions", missions, "Missions per arm in place of the file's");
+}
+
+SweepPlan SweepArguments::Load() const {
+  SweepOverrides overrides;
+  overrides.set = set;
+  overrides.seed = ParseOption<std::uint64_t>("--seed", seed, 0, UINT64_MAX);
+  overrides.missions = ParseOption<int>("--missions", missions, 1, static_cast<int>(kMaxMissions));
+  return LoadSweep(file, overrides, [](const std::string& key, const std::string& value) {
+    return key == "mission.strategy" ? CheckStrategyName(value) : std::string();
+  });
+}
+
+std::string DefaultRunDir(const SweepPlan& plan) { return "results/runs/" + plan.name; }
+
+}  // namespace ed3r

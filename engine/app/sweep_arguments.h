@@ -1,0 +1,25 @@
+// What commands that take a sweep have in common: the file, its overrides, where its results lie.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/sweep/plan.h"
+
+namespace ed3r {
+
+struct SweepArguments {
+  std::string file;
+  std::vector<std::string> set;
+  std::string seed;      // "" for the file's own
+  std::string missions;  // likewise
+
+  void AddTo(CLI::App& parser);
+  SweepPlan Load() const;  // throws UserError
+};
+
+// results/runs/<sweep name>
+std::string DefaultRunDir(const SweepPlan& plan);
+
+}  // namespace ed3r

@@ -1,0 +1,26 @@
+// From what happened to what is recorded: filling timestep records, summing them, and proving that the ledger adds up.
+#pragma once
+
+#include "engine/agents/remote_controller.h"
+#include "engine/agents/robot_agent.h"
+#include "engine/mission/record.h"
+#include "engine/mission/scenario.h"
+#include "engine/radio/link.h"
+#include "engine/robot/ledger.h"
+
+namespace ed3r {
+
+TimestepRecord OpenStep(std::uint32_t k, const MotionDecision& motion, const FlownMove& move,
+                        const ExecutionDecision& execution);
+void RecordLink(const Conditions& conditions, double rc_distance_m, const Link& link, TimestepRecord& step);
+void RecordLedger(const StepTime& time, const StepEnergy& energy, double battery_left_j,
+                  TimestepRecord& step);
+
+// Fills every sum of the mission from its steps.
+void SumSteps(double eta_min, MissionRecord& record);
+
+// Recomputes every timestep's energy from its times and the powers, and the battery from the total. Throws
+// InternalError when either misses by more than 1e-9 relative.
+void CheckLedger(const MissionRecord& record, const MovementPower& power, double battery_j);
+
+}  // namespace ed3r

@@ -1,0 +1,195 @@
+#include "engine/schedule/training_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "engine/core/check.h"
+#include "engine/core/version.h"
+#include "engine/mission/samples.h"
+#include "engine/rfnn/train_all.h"
+#include "engine/store/reader.h"
+
+namespace ed3r {
+namespace {
+
+bool RobotChooses(const Strategy& strategy) {
+  return strategy.execution == ExecutionPolicy::kNetwork && strategy.allowed.Count() > 1;
+}
+
+// Stages that `stage` builds on, directly or not.
+std::set<std::string> Foundations(const SweepPlan& plan, const Stage& stage) {
+  std::set<std::string> found(stage.after.begin(), stage.after.end());
+  for (auto it = plan.stages.rbegin(); it != plan.stages.rend(); ++it)  // a stage stands behind those it builds on
+    if (found.contains(it->name)) found.insert(it->after.begin(), it->after.end());
+  return found;
+}
+
+// The warm-up arm that an arm of `stage` learns from; (-1, -1) when there is none.
+std::pair<int, int> WarmupOf(const SweepPlan& plan, const Stage& stage, std::string_view source) {
+  const std::set<std::string> foundations = Foundations(plan, stage);
+  for (std::size_t s = 0; s < plan.stages.size(); ++s) {
+    if (plan.stages[s].kind != StageKind::kFly || !foundations.contains(plan.stages[s].name)) continue;
+    for (std::size_t a = 0; a < plan.stages[s].arms.size(); ++a)
+      if (plan.stages[s].arms[a].config.mission.strategy == source) return {static_cast<int>(s), static_cast<int>(a)};
+  }
+  return {-1, -1};
+}
+
+// All that the rows of a data set depend on.
+std::string RewardKey(std::pair<int, int> warmup, const AgentsConfig& agents) {
+  return fmt::format("{} {} {} {} {} {} {} {}", warmup.first, warmup.second, agents.eta_min, agents.lambda1,
+                     agents.lambda2, agents.mu1, agents.mu2, agents.energy_scale_j);
+}
+
+struct Samples {
+  DataSet rc{kRcNetwork.inputs()};
+  DataSet robot{kRobotNetwork.inputs()};
+};
+
+Samples ReadSamples(ResultReader& reader, const SweepPlan& plan, std::pair<int, int> warmup,
+                    const AgentsConfig& agents) {
+  const Config& flown = plan.stages[static_cast<std::size_t>(warmup.first)].arms[static_cast<std::size_t>(warmup.second)].config;
+  Samples samples;
+  reader.ForEachMission(warmup.first, warmup.second, Steps::kLoad, [&](const StoredMission& mission) {
+    AppendSamples(mission.record, mission.id.mission, flown, agents, samples.rc, samples.robot);
+  });
+  return samples;
+}
+
+}  // namespace
+
+Networks NetworkShelf::For(const RunId& id, int places) const {
+  const int seed = SeedIndex(id, places);
+  if (seed < 0) return {};
+  const Pair& pair = by_arm_.at({id.stage, id.arm})[static_cast<std::size_t>(seed)];
+  return {pair.rc.get(), pair.robot.get()};
+}
+
+int NetworkShelf::SeedIndex(const RunId& id, int places) const {
+  const auto found = by_arm_.find({id.stage, id.arm});
+  if (found == by_arm_.end()) return -1;
+  return id.mission / places % static_cast<int>(found->second.size());
+}
+
+bool NeedsNetworks(const SweepPlan& plan) {
+  return std::any_of(plan.stages.begin(), plan.stages.end(), [](const Stage& stage) {
+    return std::any_of(stage.arms.begin(), stage.arms.end(), [](const Arm& arm) {
+      return !FindStrategy(arm.config.mission.strategy).networks.empty();
+    });
+  });
+}
+
+void CheckTraining(const SweepPlan& plan) {
+  for (const Stage& stage : plan.stages) {
+    for (const Arm& arm : stage.arms) {
+      const Strategy& strategy = FindStrategy(arm.config.mission.strategy);
+      if (stage.kind != StageKind::kFly || strategy.networks.empty()) continue;
+      const std::set<std::string> foundations = Foundations(plan, stage);
+      const bool trained = std::any_of(plan.stages.begin(), plan.stages.end(), [&](const Stage& other) {
+        return other.kind == StageKind::kTrain && foundations.contains(other.name);
+      });
+      if (!trained || WarmupOf(plan, stage, strategy.networks).first < 0)
+        throw UserError(fmt::format(
+            "{}: stage {}: arm {} asks networks, so the stage must come after a training stage ('kind: train') that comes "
+            "after a stage with strategy {}",
+            plan.file, stage.name, arm.name, strategy.networks));
+    }
+  }
+}
+
+// Collects what is to be trained, each network once, and hands the results out.
+class TrainingStage {
+ public:
+  TrainingStage(const SweepPlan& plan, const TrainingOptions& options) : plan_(plan), options_(options) {}
+
+  std::unique_ptr<NetworkShelf> Run();
+
+ private:
+  struct ArmNeed {
+    int stage, arm;
+    std::vector<std::size_t> rc_jobs, robot_jobs;  // by training seed
+  };
+  void Collect();
+  std::size_t AddJob(const NetworkDesign& design, const DataSet& data, const Arm& arm, std::string_view source, int seed);
+  const Samples& SamplesFor(std::pair<int, int> warmup, const AgentsConfig& agents);
+
+  const SweepPlan& plan_;
+  const TrainingOptions& options_;
+  std::map<std::string, Samples> samples_;
+  std::vector<TrainJob> jobs_;
+  std::vector<std::string> names_;
+  std::vector<ArmNeed> needs_;
+};
+
+const Samples& TrainingStage::SamplesFor(std::pair<int, int> warmup, const AgentsConfig& agents) {
+  const std::string key = RewardKey(warmup, agents);
+  if (!samples_.contains(key)) {
+    ResultReader reader(options_.run_dir);
+    samples_.emplace(key, ReadSamples(reader, plan_, warmup, agents));
+  }
+  return samples_.at(key);
+}
+
+std::size_t TrainingStage::AddJob(const NetworkDesign& design, const DataSet& data, const Arm& arm,
+                                  std::string_view source, int seed) {
+  TrainJob job{.design = design,
+               .data = &data,
+               .config = arm.config.training,
+               .seed = static_cast<std::uint64_t>(arm.config.training.seed + seed),
+               .code_version = ThisCode().source_hash,
+               .notes = {{"warm-up", std::string(source)}, {"eta_min", fmt::format("{}", arm.config.agents.eta_min)}}};
+  std::string name =
+      fmt::format("{} from {}, eta_min {}, seed {}", design.name, source, arm.config.agents.eta_min, job.seed);
+  for (std::size_t i = 0; i < jobs_.size(); ++i)
+    if (names_[i] == name && jobs_[i].data == job.data && TrainingKey(jobs_[i]) == TrainingKey(job)) return i;
+  jobs_.push_back(std::move(job));
+  names_.push_back(std::move(name));
+  return jobs_.size() - 1;
+}
+
+void TrainingStage::Collect() {
+  for (std::size_t s = 0; s < plan_.stages.size(); ++s) {
+    const Stage& stage = plan_.stages[s];
+    for (std::size_t a = 0; a < stage.arms.size(); ++a) {
+      const Arm& arm = stage.arms[a];
+      const Strategy& strategy = FindStrategy(arm.config.mission.strategy);
+      if (stage.kind != StageKind::kFly || strategy.networks.empty()) continue;
+      const Samples& samples = SamplesFor(WarmupOf(plan_, stage, strategy.networks), arm.config.agents);
+      ArmNeed need{static_cast<int>(s), static_cast<int>(a), {}, {}};
+      for (int seed = 0; seed < arm.config.training.seeds; ++seed) {
+        need.rc_jobs.push_back(AddJob(kRcNetwork, samples.rc, arm, strategy.networks, seed));
+        if (RobotChooses(strategy))
+          need.robot_jobs.push_back(AddJob(kRobotNetwork, samples.robot, arm, strategy.networks, seed));
+      }
+      needs_.push_back(std::move(need));
+    }
+  }
+}
+
+std::unique_ptr<NetworkShelf> TrainingStage::Run() {
+  Collect();
+  TrainAllOptions train;
+  train.cache = options_.cache_dir;
+  train.threads = options_.threads;
+  train.stop = options_.stop;
+  const std::vector<std::shared_ptr<const Model>> models = TrainAll(jobs_, train);
+  if (std::any_of(models.begin(), models.end(), [](const auto& model) { return model == nullptr; })) return nullptr;
+
+  auto shelf = std::make_unique<NetworkShelf>();
+  for (std::size_t i = 0; i < jobs_.size(); ++i)
+    shelf->all_.push_back({names_[i], CachePath(options_.cache_dir, jobs_[i]), models[i]});
+  for (const ArmNeed& need : needs_) {
+    std::vector<NetworkShelf::Pair>& pairs = shelf->by_arm_[{need.stage, need.arm}];
+    for (std::size_t seed = 0; seed < need.rc_jobs.size(); ++seed)
+      pairs.push_back({models[need.rc_jobs[seed]], need.robot_jobs.empty() ? nullptr : models[need.robot_jobs[seed]]});
+  }
+  return shelf;
+}
+
+std::unique_ptr<NetworkShelf> TrainNetworks(const SweepPlan& plan, const TrainingOptions& options) {
+  return TrainingStage(plan, options).Run();
+}
+
+}  // namespace ed3r

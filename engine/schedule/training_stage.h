@@ -1,0 +1,65 @@
+// A training stage: the networks that later arms of a plan ask for, trained on the plan's own warm-up (R18).
+//
+// Which networks there are follows from the arms: one RC network per warm-up strategy, reward and training seed, and
+// a robot network where the robot has a choice. Arms that need the same network share it; so do sweeps, through the
+// cache.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/agents/context.h"
+#include "engine/rfnn/trainer.h"
+#include "engine/sweep/plan.h"
+
+namespace ed3r {
+
+// A network that was trained or found in the cache.
+struct ShelvedNetwork {
+  std::string name;   // "rc from random, eta_min 0.75, seed 1"
+  std::string file;   // in the cache
+  std::shared_ptr<const Model> model;
+};
+
+// Networks by the arm that asks for them. Immutable once made; shared read-only by all missions.
+class NetworkShelf {
+ public:
+  // Those of one mission. Missions of an arm take turns among the arm's training seeds, `places` missions at a time, so
+  // that every network meets every site and base station. All null for arms that ask none.
+  Networks For(const RunId& id, int places) const;
+  // Which of its arm's training seeds a mission flies with; -1 without networks.
+  int SeedIndex(const RunId& id, int places) const;
+
+  const std::vector<ShelvedNetwork>& All() const { return all_; }
+
+ private:
+  friend class TrainingStage;
+  struct Pair {
+    std::shared_ptr<const Model> rc, robot;
+  };
+  std::map<std::pair<int, int>, std::vector<Pair>> by_arm_;  // (stage, arm) -> one pair per training seed
+  std::vector<ShelvedNetwork> all_;
+};
+
+struct TrainingOptions {
+  std::string run_dir;    // holds the warm-up missions
+  std::string cache_dir;  // holds networks and checkpoints of all sweeps
+  int threads = 1;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+// Whether any arm of the plan asks for networks.
+bool NeedsNetworks(const SweepPlan& plan);
+
+// Arms that ask for networks must stand in stages behind a training stage that is behind a warm-up with their source
+// strategy. Throws UserError that says what is missing; part of the checks before anything is written.
+void CheckTraining(const SweepPlan& plan);
+
+// Trains, or finds, all networks. Null when stopped: the same call again continues.
+std::unique_ptr<NetworkShelf> TrainNetworks(const SweepPlan& plan, const TrainingOptions& options);
+
+}  // namespace ed3r
