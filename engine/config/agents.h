@@ -49,6 +49,7 @@ struct AgentsConfig {
   double lambda2 = 1.0;
   double mu1 = 1.0;
   double mu2 = 2.0;
+  double energy_scale_j = 10000.0;
   double epsilon_min = 0.01;
   double epsilon_decay = 0.95;
   ElseBranch else_branch = ElseBranch::kDecayed;
@@ -62,7 +63,7 @@ struct AgentsConfig {
   static void Describe(Self& self, Visitor&& visit) {
     constexpr std::string_view kTable = "Table ED3R configuration";
     visit("eta_min", self.eta_min,
-          {.min = 0.05, .max = 1, .source = "Eq. 11; Result 1", .meaning = "required detection confidence"});
+          {.min = 0.05, .max = 1, .source = "Eq. 12; Result 1", .meaning = "required detection confidence"});
     visit("eta_int", self.eta_int,
           {.min = 0, .max = 1, .source = kTable, .meaning = "intermediate confidence threshold"});
     visit("completion_patience", self.completion_patience,
@@ -112,13 +113,15 @@ struct AgentsConfig {
            .source = "Table ED3R configuration, R19",
            .meaning = "candidate actions N of the RC"});
     visit("lambda1", self.lambda1,
-          {.min = 0, .max = 100, .source = kTable, .meaning = "weight of the constraint penalty (Eq. 16)"});
+          {.min = 0, .max = 100, .source = kTable, .meaning = "weight of the constraint penalty (Eq. 17)"});
     visit("lambda2", self.lambda2,
-          {.min = 0, .max = 100, .source = kTable, .meaning = "weight of the detection penalty (Eq. 16)"});
+          {.min = 0, .max = 100, .source = kTable, .meaning = "weight of the detection penalty (Eq. 17)"});
     visit("mu1", self.mu1,
-          {.min = 0, .max = 100, .source = kTable, .meaning = "weight of the energy (Eq. 17)"});
+          {.min = 0, .max = 100, .source = kTable, .meaning = "weight of the energy (Eq. 18)"});
     visit("mu2", self.mu2,
-          {.min = 0, .max = 100, .source = kTable, .meaning = "weight of the penalty (Eq. 17)"});
+          {.min = 0, .max = 100, .source = kTable, .meaning = "weight of the penalty (Eq. 18)"});
+    visit("energy_scale_j", self.energy_scale_j,
+          {.unit = "J", .min = 1, .max = 1e6, .source = "Eq. 21, R32", .meaning = "energy that counts as 1 in the reward: the largest a timestep takes"});
     visit("epsilon_min", self.epsilon_min,
           {.min = 0, .max = 1, .source = "Table ED3R configuration, R20", .meaning = "least exploration"});
     visit("epsilon_decay", self.epsilon_decay,

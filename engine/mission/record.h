@@ -8,17 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/agents/decisions.h"
 #include "engine/config/field.h"
 
 namespace ed3r {
-
-// Where and how detection is executed (o_k, l_k). The robot's three actions (R17).
-enum class Execution : std::int64_t { kOffload = 0, kFull = 1, kQuantized = 2 };
-template <>
-struct EnumNames<Execution> {
-  static constexpr EnumName<Execution> kNames[] = {
-      {Execution::kOffload, "offload"}, {Execution::kFull, "full"}, {Execution::kQuantized, "quantized"}};
-};
 
 enum class Outcome : std::int64_t { kSuccess = 0, kFalsePositive = 1, kBatteryDepleted = 2 };
 template <>
@@ -26,34 +19,6 @@ struct EnumNames<Outcome> {
   static constexpr EnumName<Outcome> kNames[] = {{Outcome::kSuccess, "success"},
                                                  {Outcome::kFalsePositive, "false-positive"},
                                                  {Outcome::kBatteryDepleted, "battery-depleted"}};
-};
-
-// Which rule produced the motion command.
-enum class MotionRule : std::int64_t {
-  kRandom = 0,
-  kGreedy = 1,
-  kHover = 2,
-  kRegionPromising = 3,
-  kRegionUnexplored = 4,
-  kRegionNearest = 5
-};
-template <>
-struct EnumNames<MotionRule> {
-  static constexpr EnumName<MotionRule> kNames[] = {{MotionRule::kRandom, "random"},
-                                                    {MotionRule::kGreedy, "greedy"},
-                                                    {MotionRule::kHover, "hover"},
-                                                    {MotionRule::kRegionPromising, "region-promising"},
-                                                    {MotionRule::kRegionUnexplored, "region-unexplored"},
-                                                    {MotionRule::kRegionNearest, "region-nearest"}};
-};
-
-// The Algorithm's branch at this timestep.
-enum class ConfidenceBand : std::int64_t {
-  kNone = 0,
-  kReliable = 1,
-  kIntermediate = 2,
-  kPersisting = 3,
-  kLow = 4
 };
 
 struct TimestepRecord {

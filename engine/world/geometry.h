@@ -3,12 +3,13 @@
 //
 // Frame: x east, y north, z up, metres; the origin is the south-west corner at the lowest ground.
 // Threads: immutable after construction; every const member may be called from any thread.
-// Determinism: Embree is pinned to one instruction set, so a ray's answer does not depend on the CPU.
+// Determinism: Embree is pinned to one instruction set and only says which triangle a ray meets; the distance
+// is computed here in double precision. So a ray's answer does not depend on the CPU.
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 class btCollisionShape;
@@ -19,6 +20,10 @@ struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices_m;
   std::vector<Eigen::Vector3i> triangles;  // counter-clockwise seen from outside (terrain: from above)
 };
+
+// Name of the instruction set that rays use: "avx2" on every x86-64-v3 machine, newer ones included; "sse2"
+// on older ones, where rays that graze an edge may answer differently.
+std::string_view RayInstructionSet();
 
 class StaticGeometry {
  public:

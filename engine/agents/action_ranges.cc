@@ -1,0 +1,54 @@
+#include "engine/agents/action_ranges.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace ed3r {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+}  // namespace
+
+ActionRanges ActionRanges::Full(const AgentsConfig& agents) {
+  return {agents.axis_range_m, agents.yaw_range_deg * kDegree, agents.tilt_range_deg * kDegree};
+}
+
+ActionRanges ActionRanges::Decreased(const AgentsConfig& agents) const {
+  if (agents.range_rule == RangeRule::kPercent)
+    return {axis_m * (1.0 - agents.decrease_axes / 100.0), yaw_rad * (1.0 - agents.decrease_yaw / 100.0),
+            tilt_rad * (1.0 - agents.decrease_tilt / 100.0)};
+  return {axis_m / agents.decrease_axes, yaw_rad / agents.decrease_yaw, tilt_rad / agents.decrease_tilt};
+}
+
+ActionRanges ActionRanges::Increased(const AgentsConfig& agents) const {
+  ActionRanges wider;
+  if (agents.range_rule == RangeRule::kPercent) {
+    wider = {axis_m * (1.0 + agents.decrease_axes / 100.0), yaw_rad * (1.0 + agents.decrease_yaw / 100.0),
+             tilt_rad * (1.0 + agents.decrease_tilt / 100.0)};
+  } else {
+    wider = {axis_m + agents.decrease_axes, yaw_rad + agents.decrease_yaw * kDegree,
+             tilt_rad + agents.decrease_tilt * kDegree};
+  }
+  const ActionRanges full = Full(agents);
+  return {std::min(wider.axis_m, full.axis_m), std::min(wider.yaw_rad, full.yaw_rad),
+          std::min(wider.tilt_rad, full.tilt_rad)};
+}
+
+TiltInterval TiltCommands(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad) {
+  const double full_rad = agents.tilt_range_deg * kDegree;
+  if (agents.tilt_command == TiltCommand::kAbsolute && ranges.tilt_rad >= full_rad) return {0.0, full_rad};
+  return {std::clamp(tilt_rad - 0.5 * ranges.tilt_rad, 0.0, full_rad),
+          std::clamp(tilt_rad + 0.5 * ranges.tilt_rad, 0.0, full_rad)};
+}
+
+MotionCommand DrawCommand(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad, Stream& stream) {
+  MotionCommand command;
+  for (int axis = 0; axis < 3; ++axis) command.displacement_m[axis] = stream.Uniform(-ranges.axis_m, ranges.axis_m);
+  command.turn_rad = stream.Uniform(-ranges.yaw_rad, ranges.yaw_rad);
+  const TiltInterval tilt = TiltCommands(ranges, agents, tilt_rad);
+  command.tilt_rad = stream.Uniform(tilt.low_rad, tilt.high_rad);
+  return command;
+}
+
+}  // namespace ed3r

@@ -1,0 +1,144 @@
+#include "engine/perception/view.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/core/check.h"
+#include "engine/core/random.h"
+
+namespace ed3r {
+namespace {
+
+constexpr int kFlameSamples = 32;
+constexpr int kSmokeSamples = 48;
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kDistractorHeightM = 0.5;  // above ground, so that the ground itself does not hide it
+
+// Radical inverse: low-discrepancy points, the same for every fire.
+double RadicalInverse(int index, int base) {
+  double value = 0.0, digit = 1.0 / base;
+  for (; index > 0; index /= base, digit /= base) value += digit * (index % base);
+  return value;
+}
+
+// Area that a body element shows to a ray which looks down at it: part of its side, part of its top.
+double FacingArea(double side_m2, double top_m2, const Eigen::Vector3d& ray) {
+  const double distance_m = ray.norm();
+  const double down = std::abs(ray.z()) / distance_m;
+  return side_m2 * std::sqrt(std::max(0.0, 1.0 - down * down)) + top_m2 * down;
+}
+
+}  // namespace
+
+std::vector<Distractor> DrawDistractors(const Scene& scene, const PerceptionConfig& perception,
+                                        std::uint64_t seed, std::uint32_t scenario) {
+  Stream stream(seed, scenario, Purpose::kDistractors);
+  const Eigen::Vector3d& size_m = scene.SizeM();
+  const double expected = perception.distractors_per_km2 * size_m.x() * size_m.y() * 1e-6;
+  const int count = static_cast<int>(expected + stream.Uniform());
+  std::vector<Distractor> distractors;
+  distractors.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    const double x_m = stream.Uniform(0.0, size_m.x());
+    const double y_m = stream.Uniform(0.0, size_m.y());
+    const double radius_m = perception.distractor_radius_m * stream.Uniform(0.5, 1.5);
+    distractors.push_back({{x_m, y_m, scene.Ground().HeightAt(x_m, y_m) + kDistractorHeightM}, radius_m});
+  }
+  return distractors;
+}
+
+Camera::Camera(const Pose& pose, const SensingConfig& sensing) : position_m_(pose.position_m) {
+  const double cos_yaw = std::cos(pose.yaw_rad), sin_yaw = std::sin(pose.yaw_rad);
+  const double cos_tilt = std::cos(pose.tilt_rad), sin_tilt = std::sin(pose.tilt_rad);
+  forward_ = {cos_yaw * cos_tilt, sin_yaw * cos_tilt, -sin_tilt};
+  right_ = {sin_yaw, -cos_yaw, 0.0};
+  down_ = forward_.cross(right_);
+  half_width_ = std::tan(0.5 * sensing.camera_hfov_deg * kDegree);
+  half_height_ = half_width_ * sensing.camera_height_px / sensing.camera_width_px;
+}
+
+double Camera::ShareOf(const Eigen::Vector3d& point_m, double area_m2) const {
+  const Eigen::Vector3d ray = point_m - position_m_;
+  const double depth_m = ray.dot(forward_);
+  if (depth_m < 0.1) return 0.0;
+  if (std::abs(ray.dot(right_)) > half_width_ * depth_m || std::abs(ray.dot(down_)) > half_height_ * depth_m)
+    return 0.0;
+  // A patch of area A facing the camera at distance r covers A / r^2 steradians; off the axis by theta the
+  // image plane stretches that by 1 / cos^3(theta), with cos(theta) = depth / r.
+  const double distance_m = ray.norm();
+  const double image_area = area_m2 * distance_m / (depth_m * depth_m * depth_m);
+  return image_area / (4.0 * half_width_ * half_height_);
+}
+
+FireView::FireView(const Scene& scene, int site) : scene_(scene) {
+  ED3R_CHECK(site >= 0 && site < static_cast<int>(scene.Sites().size()), "site index");
+  const FireShape& fire = scene.Fire();
+  const Eigen::Vector3d base_m = scene.Sites()[static_cast<std::size_t>(site)].base_m;
+  // Flame: a cone. Its silhouette narrows towards the tip, so heights are drawn with density 2 (1 - h).
+  const double flame_side_m2 = fire.flame_radius_m * fire.flame_height_m;
+  const double flame_top_m2 = std::numbers::pi * fire.flame_radius_m * fire.flame_radius_m;
+  for (int i = 0; i < kFlameSamples; ++i) {
+    const double h = 1.0 - std::sqrt(1.0 - RadicalInverse(i + 1, 2));
+    const double radius_m = fire.flame_radius_m * (1.0 - h) * std::sqrt(RadicalInverse(i + 1, 3));
+    const double angle = 2.0 * std::numbers::pi * RadicalInverse(i + 1, 5);
+    flame_.push_back({base_m + Eigen::Vector3d(radius_m * std::cos(angle), radius_m * std::sin(angle),
+                                               0.5 + h * (fire.flame_height_m - 0.5)),
+                      flame_side_m2 / kFlameSamples, flame_top_m2 / kFlameSamples});
+  }
+  // Smoke: from the flame's tip to the top, widening and leaning.
+  const double smoke_height_m = fire.total_height_m - fire.flame_height_m;
+  const double bottom_m = 0.5 * fire.flame_radius_m;
+  const double smoke_side_m2 = (bottom_m + fire.smoke_top_radius_m) * smoke_height_m;
+  const double smoke_top_m2 = std::numbers::pi * fire.smoke_top_radius_m * fire.smoke_top_radius_m;
+  for (int i = 0; i < kSmokeSamples; ++i) {
+    const double h = RadicalInverse(i + 1, 2);
+    const double radius_m =
+        (bottom_m + h * (fire.smoke_top_radius_m - bottom_m)) * std::sqrt(RadicalInverse(i + 1, 3));
+    const double angle = 2.0 * std::numbers::pi * RadicalInverse(i + 1, 5);
+    smoke_.push_back({base_m + Eigen::Vector3d(radius_m * std::cos(angle) + h * fire.lean_x_m,
+                                               radius_m * std::sin(angle) + h * fire.lean_y_m,
+                                               fire.flame_height_m + h * smoke_height_m),
+                      smoke_side_m2 / kSmokeSamples, smoke_top_m2 / kSmokeSamples});
+  }
+}
+
+double FireView::VisibleShare(const Camera& camera, const std::vector<Sample>& samples, double haze_range_m,
+                              int& visible) const {
+  double share = 0.0;
+  for (const Sample& sample : samples) {
+    const Eigen::Vector3d ray = sample.position_m - camera.PositionM();
+    const double in_frame = camera.ShareOf(sample.position_m, FacingArea(sample.side_m2, sample.top_m2, ray));
+    if (in_frame <= 0.0 || scene_.Geometry().Occluded(camera.PositionM(), sample.position_m)) continue;
+    share += in_frame * std::exp(-ray.norm() / haze_range_m);
+    ++visible;
+  }
+  return std::min(share, 1.0);
+}
+
+View FireView::Look(const Pose& pose, const SensingConfig& sensing, const PerceptionConfig& perception,
+                    const std::vector<Distractor>& distractors) const {
+  const Camera camera(pose, sensing);
+  View view;
+  int visible = 0;
+  view.fire_share = VisibleShare(camera, flame_, perception.haze_range_m, visible);
+  view.smoke_share = VisibleShare(camera, smoke_, perception.haze_range_m, visible);
+  view.visible_fraction = static_cast<double>(visible) / (kFlameSamples + kSmokeSamples);
+  view.fire_in_view = visible > 0;
+  for (const Distractor& distractor : distractors) {
+    const Eigen::Vector3d ray = distractor.position_m - camera.PositionM();
+    const double steepness_deg = std::asin(std::clamp(-ray.z() / ray.norm(), -1.0, 1.0)) / kDegree;
+    const double misleading =
+        (steepness_deg - perception.distractor_tilt_deg) / (90.0 - perception.distractor_tilt_deg + 1e-9);
+    if (misleading <= 0.0) continue;
+    const double disc_m2 = std::numbers::pi * distractor.radius_m * distractor.radius_m;
+    const double share = camera.ShareOf(distractor.position_m, FacingArea(0.0, disc_m2, ray));
+    if (share <= 0.0 || scene_.Geometry().Occluded(camera.PositionM(), distractor.position_m)) continue;
+    view.distractor_share += share * misleading * std::exp(-ray.norm() / perception.haze_range_m);
+  }
+  view.distractor_share = std::min(view.distractor_share, 1.0);
+  return view;
+}
+
+}  // namespace ed3r

@@ -1,0 +1,35 @@
+// Closed forms of the energy model: movement powers, sensing, computation (Eqs. 1-7, Appendix; R1-R7).
+// Pure functions of their arguments.
+#pragma once
+
+#include "engine/config/energy.h"
+#include "engine/config/environment.h"
+#include "engine/config/robot.h"
+
+namespace ed3r {
+
+// P_m for each movement type, in watts. Vertical movement is split by direction (the indicator of Eq. P_ver).
+struct MovementPower {
+  double hover_w = 0.0;
+  double horizontal_w = 0.0;
+  double ascent_w = 0.0;
+  double descent_w = 0.0;
+};
+MovementPower PaperMovementPower(const RobotConfig& robot, const EnvironmentConfig& environment,
+                                 const EnergyConfig& energy);
+
+// Eq. 3: all sensors over one sensing period.
+double SensingEnergyJ(const SensingConfig& sensing);
+
+// What one detection model costs on board for all frames of a sensing period at CPU frequency f (Eqs. 5, 6).
+struct ComputationCost {
+  double time_s = 0.0;
+  double energy_j = 0.0;
+};
+ComputationCost Computation(const CpuConfig& cpu, const SensingConfig& sensing, double gflop_per_frame,
+                            double frequency_hz);
+
+// Bytes of one offload: all frames of a sensing period (Eq. 8; R6: LiDAR is not sent).
+double PayloadByte(const SensingConfig& sensing);
+
+}  // namespace ed3r

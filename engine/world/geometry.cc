@@ -1,0 +1,175 @@
+#include "engine/world/geometry.h"
+
+#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+constexpr double kOcclusionMarginM = 0.01;
+// Bullet's quantized tree keeps a triangle's index in 21 bits.
+constexpr std::size_t kMaxTriangles = std::size_t{1} << 21;
+
+// Both libraries read these buffers in place.
+static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float) && sizeof(Eigen::Vector3i) == 3 * sizeof(int));
+static_assert(std::is_same_v<btScalar, float>, "Bullet must be built in single precision");
+
+void CheckMesh(const TriangleMesh& mesh) {
+  ED3R_CHECK(!mesh.vertices_m.empty() && !mesh.triangles.empty(), "empty mesh");
+  ED3R_CHECK(mesh.triangles.size() < kMaxTriangles, fmt::format("{} triangles", mesh.triangles.size()));
+  for (const Eigen::Vector3f& vertex : mesh.vertices_m)
+    ED3R_CHECK(vertex.allFinite(), "a vertex is not finite");
+  const int vertices = static_cast<int>(mesh.vertices_m.size());
+  for (const Eigen::Vector3i& triangle : mesh.triangles)
+    ED3R_CHECK(triangle.minCoeff() >= 0 && triangle.maxCoeff() < vertices,
+               fmt::format("triangle ({}, {}, {}) of {} vertices", triangle.x(), triangle.y(), triangle.z(),
+                           vertices));
+}
+
+struct DeviceDeleter {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneDeleter {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using DevicePtr = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceDeleter>;
+using ScenePtr = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneDeleter>;
+
+DevicePtr MakeDevice() {
+  // One build thread: missions already use every core, and a build in tasks may order its tree differently.
+  const std::string config = fmt::format("isa={},threads=1", RayInstructionSet());
+  DevicePtr device(rtcNewDevice(config.c_str()));
+  ED3R_CHECK(device,
+             fmt::format("Embree error {} for '{}'", static_cast<int>(rtcGetDeviceError(nullptr)), config));
+  return device;
+}
+
+ScenePtr MakeScene(RTCDevice device, const TriangleMesh& mesh) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.vertices_m.data(),
+                             0, sizeof(Eigen::Vector3f), mesh.vertices_m.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                             sizeof(Eigen::Vector3i), mesh.triangles.size());
+  rtcCommitGeometry(geometry);
+  ScenePtr scene(rtcNewScene(device));
+  // Robust: a ray straight down onto an edge of the terrain must not slip between its two triangles.
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+  rtcAttachGeometry(scene.get(), geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene.get());
+  const RTCError error = rtcGetDeviceError(device);
+  ED3R_CHECK(error == RTC_ERROR_NONE, fmt::format("Embree error {}", static_cast<int>(error)));
+  return scene;
+}
+
+void SetRay(RTCRay& ray, const Eigen::Vector3d& origin_m, const Eigen::Vector3d& direction, double near_m,
+            double far_m) {
+  ray.org_x = static_cast<float>(origin_m.x());
+  ray.org_y = static_cast<float>(origin_m.y());
+  ray.org_z = static_cast<float>(origin_m.z());
+  ray.dir_x = static_cast<float>(direction.x());
+  ray.dir_y = static_cast<float>(direction.y());
+  ray.dir_z = static_cast<float>(direction.z());
+  ray.tnear = static_cast<float>(near_m);
+  ray.tfar = static_cast<float>(far_m);
+  ray.time = 0.0f;
+  ray.mask = ~0u;
+  ray.id = 0;
+  ray.flags = 0;
+}
+
+}  // namespace
+
+std::string_view RayInstructionSet() {
+  static const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return has_avx2 ? "avx2" : "sse2";
+}
+
+struct StaticGeometry::Impl {
+  explicit Impl(TriangleMesh m)
+      : mesh(PadForEmbree(std::move(m))),
+        device(MakeDevice()),
+        scene(MakeScene(device.get(), mesh)),
+        bullet_mesh(static_cast<int>(mesh.triangles.size()), mesh.triangles.data()->data(),
+                    sizeof(Eigen::Vector3i), static_cast<int>(mesh.vertices_m.size()),
+                    mesh.vertices_m.data()->data(), sizeof(Eigen::Vector3f)),
+        shape(&bullet_mesh, /*useQuantizedAabbCompression=*/true) {}
+
+  // Embree reads vertices in blocks of 16 bytes: the last one needs memory behind it.
+  static TriangleMesh PadForEmbree(TriangleMesh m) {
+    CheckMesh(m);
+    m.vertices_m.reserve(m.vertices_m.size() + 1);
+    return m;
+  }
+
+  // Where the ray meets the plane of a triangle that Embree says it hits. Embree's own distance contains an
+  // approximate reciprocal that differs between makers of CPUs. At a grazing angle the plane's answer is
+  // ill-conditioned, so it is kept within the triangle's extent along the ray.
+  double DistanceToTriangle(unsigned index, const Eigen::Vector3d& origin_m,
+                            const Eigen::Vector3d& direction) const {
+    const Eigen::Vector3i& corners = mesh.triangles[index];
+    const Eigen::Vector3d a = mesh.vertices_m[corners[0]].cast<double>() - origin_m;
+    const Eigen::Vector3d b = mesh.vertices_m[corners[1]].cast<double>() - origin_m;
+    const Eigen::Vector3d c = mesh.vertices_m[corners[2]].cast<double>() - origin_m;
+    const double along[] = {a.dot(direction), b.dot(direction), c.dot(direction)};
+    const auto [nearest, farthest] = std::minmax_element(std::begin(along), std::end(along));
+    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    const double slope = normal.dot(direction);
+    const double distance = slope != 0.0 ? normal.dot(a) / slope : *nearest;
+    return std::clamp(distance, *nearest, *farthest);
+  }
+
+  TriangleMesh mesh;
+  DevicePtr device;
+  ScenePtr scene;
+  btTriangleIndexVertexArray bullet_mesh;
+  btBvhTriangleMeshShape shape;
+};
+
+StaticGeometry::StaticGeometry(TriangleMesh mesh) : impl_(std::make_unique<Impl>(std::move(mesh))) {}
+
+StaticGeometry::~StaticGeometry() = default;
+
+double StaticGeometry::Distance(const Eigen::Vector3d& origin_m, const Eigen::Vector3d& direction,
+                                double range_m) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit hit;
+  SetRay(hit.ray, origin_m, direction, 0.0, range_m);
+  hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(impl_->scene.get(), &context, &hit);
+  if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::numeric_limits<double>::infinity();
+  return std::clamp(impl_->DistanceToTriangle(hit.hit.primID, origin_m, direction), 0.0, range_m);
+}
+
+bool StaticGeometry::Occluded(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const {
+  const Eigen::Vector3d path = to_m - from_m;
+  const double length_m = path.norm();
+  if (length_m <= 2.0 * kOcclusionMarginM) return false;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay ray;
+  SetRay(ray, from_m, path / length_m, kOcclusionMarginM, length_m - kOcclusionMarginM);
+  rtcOccluded1(impl_->scene.get(), &context, &ray);
+  return ray.tfar < 0.0f;
+}
+
+btCollisionShape* StaticGeometry::Shape() const { return &impl_->shape; }
+
+const TriangleMesh& StaticGeometry::Mesh() const { return impl_->mesh; }
+
+}  // namespace ed3r

@@ -1,0 +1,55 @@
+#include "engine/agents/strategy.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/agents/robot_agent.h"
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+// The paper's Table of ablations, line by line.
+TEST(StrategyTest, AblationsRestrictTheRobotOnly) {
+  const Strategy& ed3r = FindStrategy("ed3r");
+  const auto allowed = [](std::string_view name) {
+    const AllowedExecutions& a = FindStrategy(name).allowed;
+    return std::vector<bool>{a.offload, a.full, a.quantized};
+  };
+  EXPECT_EQ(allowed("ed3r"), (std::vector<bool>{true, true, true}));
+  EXPECT_EQ(allowed("ablation-1"), (std::vector<bool>{false, true, false}));
+  EXPECT_EQ(allowed("ablation-2"), (std::vector<bool>{false, false, true}));
+  EXPECT_EQ(allowed("ablation-3"), (std::vector<bool>{false, true, true}));
+  EXPECT_EQ(allowed("ablation-4"), (std::vector<bool>{true, false, false}));
+  for (std::string_view name : {"ablation-1", "ablation-2", "ablation-3", "ablation-4"}) {
+    const Strategy& ablation = FindStrategy(name);
+    EXPECT_EQ(ablation.motion, ed3r.motion);
+    EXPECT_EQ(ablation.execution, ed3r.execution);
+    EXPECT_EQ(ablation.early_completion, ed3r.early_completion);
+    EXPECT_EQ(ablation.region_avoidance, ed3r.region_avoidance);
+    EXPECT_EQ(ablation.networks, ed3r.networks);
+  }
+}
+
+TEST(StrategyTest, UnknownNameIsRefusedWithTheList) {
+  try {
+    FindStrategy("edr3");
+    FAIL();
+  } catch (const UserError& error) {
+    EXPECT_STREQ(error.what(),
+                 "mission.strategy: 'edr3' is not allowed; allowed: random | random-offload | rbs | ed3r | ablation-1 | "
+                 "ablation-2 | ablation-3 | ablation-4 | ecd2r; did you mean ed3r?");
+  }
+}
+
+TEST(StrategyTest, RandomRobotUsesAllThreeActionsAlike) {
+  const Config config;
+  int counts[3] = {};
+  for (std::uint32_t scenario = 0; scenario < 3000; ++scenario) {
+    const RobotAgent robot(config, FindStrategy("random"), 1, scenario);
+    ++counts[static_cast<int>(robot.ChooseExecution(RobotView(), 1).execution)];
+  }
+  for (int count : counts) EXPECT_NEAR(count, 1000, 130);  // five standard deviations
+}
+
+}  // namespace
+}  // namespace ed3r

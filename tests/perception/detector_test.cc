@@ -1,0 +1,43 @@
+#include "engine/perception/detector.h"
+
+#include <gtest/gtest.h>
+
+namespace ed3r {
+namespace {
+
+double MeanScs(double fire_share, DetectionModel model) {
+  const PerceptionConfig perception;
+  double sum = 0.0;
+  for (std::uint32_t scenario = 0; scenario < 500; ++scenario)
+    sum += DetectFromProfile({.fire_share = fire_share}, perception, model, 33, 1, scenario, 1).scs;
+  return sum / 500;
+}
+
+TEST(ProfileDetectorTest, NothingInViewIsNothingDetected) {
+  EXPECT_EQ(MeanScs(0.0, DetectionModel::kFull), 0.0);
+  EXPECT_EQ(MeanScs(0.0, DetectionModel::kQuantized), 0.0);
+}
+
+TEST(ProfileDetectorTest, MoreFireMoreConfidence) {
+  EXPECT_LT(MeanScs(0.0005, DetectionModel::kFull), MeanScs(0.005, DetectionModel::kFull));
+  EXPECT_GT(MeanScs(0.2, DetectionModel::kFull), 0.9);
+}
+
+TEST(ProfileDetectorTest, QuantizedIsTheWeakerModel) {
+  for (const double share : {0.002, 0.01, 0.05})
+    EXPECT_LT(MeanScs(share, DetectionModel::kQuantized), MeanScs(share, DetectionModel::kFull)) << share;
+}
+
+TEST(ProfileDetectorTest, DrawsAreKeyed) {
+  const PerceptionConfig perception;
+  const View view{.fire_share = 0.004};
+  const auto detect = [&](std::uint32_t scenario, std::uint32_t timestep) {
+    return DetectFromProfile(view, perception, DetectionModel::kFull, 33, 1, scenario, timestep).mean;
+  };
+  EXPECT_EQ(detect(1, 1), detect(1, 1));
+  EXPECT_NE(detect(1, 1), detect(1, 2));
+  EXPECT_NE(detect(1, 1), detect(2, 1));
+}
+
+}  // namespace
+}  // namespace ed3r
