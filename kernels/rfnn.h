@@ -29,12 +29,15 @@ struct RfnnBest {
 };
 
 // Arguments of one decision. Unaligned pointers are fine; nothing may overlap.
+//   state     n_state floats, 0 <= n_state <= inputs
+//   actions   n rows of inputs - n_state floats
+//   values    receives n predicted values; null where they are not wanted
 struct RfnnDecision {
-  const float* state = nullptr;    // n_state floats, 0 <= n_state <= inputs
-  int n_state = 0;                 //
-  const float* actions = nullptr;  // n x (inputs - n_state), row-major
-  int n = 0;                       // candidates
-  float* values = nullptr;         // n predicted values, or null where they are not wanted
+  const float* state = nullptr;
+  int n_state = 0;
+  const float* actions = nullptr;
+  int n = 0;
+  float* values = nullptr;
 };
 
 // Floats of scratch memory that any call with this shape needs, at any level and number of candidates.

@@ -1,0 +1,13 @@
+// Scalar level for any CPU: the fused multiply-add comes from the C library.
+#include "kernels/level_scalar.h"
+
+#include "kernels/rfnn_loops.h"
+
+namespace ed3r {
+
+const DenseKernels& ScalarKernels() {
+  static constexpr DenseKernels kKernels{AcrossCandidates, AcrossNeurons};
+  return kKernels;
+}
+
+}  // namespace ed3r
