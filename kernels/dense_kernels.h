@@ -14,10 +14,64 @@ namespace ed3r {
 // Candidates of the widest tile (AVX-512: 3 vectors of 16).
 inline constexpr int kMaxTile = 48;
 
+// Dropout of one step: neuron j of row r is dropped when hash(key, counter(r, j)) >> 1 < threshold.
+struct DropoutDraws {
+  std::uint32_t key0, key1;
+  std::uint32_t threshold;  // p 2^31
+  float scale;              // 1 / (1 - p)
+};
+
+// One sub-block of a batch, n <= kTrainRows rows.
+struct TrainBlock {
+  const DenseShape* shape;
+  const float* packed;
+  const float* transposed;    // see TransposedFloats
+  const float* inputs;        // the data set
+  const float* targets;       //
+  const std::uint32_t* rows;  // n rows of it
+  int n;
+  int first_row;       // of this sub-block in the batch
+  float error_factor;  // 2 / rows of the batch
+  DropoutDraws dropout;
+  float* gradient;  // out, packed form
+  float* scratch;   // TrainScratchFloats
+};
+
+// Adam's constants in one step; see train.h.
+struct AdamStep {
+  float beta1, one_minus_beta1;
+  float beta2, one_minus_beta2;
+  float rate;         // rate / (1 - beta1^t)
+  float root_factor;  // 1 / sqrt(1 - beta2^t)
+  float epsilon;
+};
+
+// What Adam updates: everything in packed form, gradients of `blocks` sub-blocks one after the other.
+struct AdamState {
+  const DenseShape* shape;
+  AdamStep step;
+  const float* gradients;
+  int blocks;
+  float* packed;
+  float* m;
+  float* v;
+  float* transposed;
+};
+
 struct DenseKernels {
   RfnnBest (*across_candidates)(const DenseNet& net, const RfnnDecision& decision, float* workspace);
   RfnnBest (*across_neurons)(const DenseNet& net, const RfnnDecision& decision, float* workspace);
+  // Fills the gradient of the batch's loss due to these rows; returns their sum of squared errors.
+  double (*gradient)(const TrainBlock& block);
+  // Updates one block of 16 outputs of a layer, and its part of the transposed weights.
+  void (*adam)(const AdamState& state, int layer, int output_block);
 };
+
+// The backward pass reads the weights of layers 1 and up the other way round: layer by layer, per block of 16
+// inputs one row of 16 weights per output.
+std::size_t TransposedFloats(const DenseShape& shape);
+std::size_t TransposedLayerOffset(const DenseShape& shape, int layer);
+std::size_t TrainScratchFloats(const DenseShape& shape);
 
 const DenseKernels& ScalarKernels();     // std::fma by the C library: any CPU
 const DenseKernels& ScalarFmaKernels();  // the same code where the CPU has the scalar instruction

@@ -1,6 +1,9 @@
 // AVX2 + FMA level (compiled with -mavx2 -mfma).
 #include <immintrin.h>
 
+#include "kernels/avx_transpose.h"
+#include "kernels/dense_kernels.h"
+
 namespace ed3r {
 namespace {
 
@@ -14,20 +17,46 @@ struct V {
   static F Load(const float* p) { return _mm256_loadu_ps(p); }
   static void Store(float* p, F v) { _mm256_storeu_ps(p, v); }
   static F Set1(float v) { return _mm256_set1_ps(v); }
+  static F Held(F v) { return v; }
   static F Fma(F a, F b, F c) { return _mm256_fmadd_ps(a, b, c); }
+  static F FusedNegative(F a, F b, F c) { return _mm256_fnmadd_ps(a, b, c); }
+  static F Add(F a, F b) { return _mm256_add_ps(a, b); }
+  static F Mul(F a, F b) { return _mm256_mul_ps(a, b); }
+  static F Div(F a, F b) { return _mm256_div_ps(a, b); }
+  static F Sqrt(F v) { return _mm256_sqrt_ps(v); }
   // maxps returns its second operand for a NaN or two zeros: 0 > z ? 0 : z.
   static F Relu(F z) { return _mm256_max_ps(_mm256_setzero_ps(), z); }
+  static F WherePositive(F h, F x) {
+    return _mm256_and_ps(_mm256_cmp_ps(h, _mm256_setzero_ps(), _CMP_GT_OQ), x);
+  }
+
+  // As in level_scalar.h.
+  static F Dropout(F x, std::uint32_t counter, const DropoutDraws& draws) {
+    const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    __m256i h = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(counter)), lanes);
+    h = _mm256_xor_si256(h, _mm256_set1_epi32(static_cast<int>(draws.key0)));
+    h = _mm256_mullo_epi32(_mm256_xor_si256(h, _mm256_srli_epi32(h, 16)), _mm256_set1_epi32(0x7feb352d));
+    h = _mm256_xor_si256(h, _mm256_set1_epi32(static_cast<int>(draws.key1)));
+    h = _mm256_mullo_epi32(_mm256_xor_si256(h, _mm256_srli_epi32(h, 15)),
+                           _mm256_set1_epi32(static_cast<int>(0x846ca68bu)));
+    h = _mm256_xor_si256(h, _mm256_srli_epi32(h, 16));
+    const __m256i limit = _mm256_set1_epi32(static_cast<int>(draws.threshold));
+    return _mm256_andnot_ps(_mm256_castsi256_ps(_mm256_cmpgt_epi32(limit, _mm256_srli_epi32(h, 1))), x);
+  }
+
+  static void Transpose(const float* from, float* to) { TransposeBlock(from, to); }
 };
 
 }  // namespace
 }  // namespace ed3r
 
 #include "kernels/rfnn_loops.h"
+#include "kernels/train_loops.h"
 
 namespace ed3r {
 
 const DenseKernels& Avx2Kernels() {
-  static constexpr DenseKernels kKernels{AcrossCandidates, AcrossNeurons};
+  static constexpr DenseKernels kKernels{AcrossCandidates, AcrossNeurons, BlockGradient, AdamBlock};
   return kKernels;
 }
 

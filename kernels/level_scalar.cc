@@ -2,11 +2,12 @@
 #include "kernels/level_scalar.h"
 
 #include "kernels/rfnn_loops.h"
+#include "kernels/train_loops.h"
 
 namespace ed3r {
 
 const DenseKernels& ScalarKernels() {
-  static constexpr DenseKernels kKernels{AcrossCandidates, AcrossNeurons};
+  static constexpr DenseKernels kKernels{AcrossCandidates, AcrossNeurons, BlockGradient, AdamBlock};
   return kKernels;
 }
 

@@ -2,6 +2,10 @@
 // compiler flag.
 #pragma once
 
+#include <cstdint>
+
+#include "kernels/dense_kernels.h"
+
 namespace ed3r {
 namespace {
 
@@ -14,8 +18,31 @@ struct V {
   static F Load(const float* p) { return *p; }
   static void Store(float* p, F v) { *p = v; }
   static F Set1(float v) { return v; }
+  static F Held(F v) { return v; }
   static F Fma(F a, F b, F c) { return __builtin_fmaf(a, b, c); }
+  static F FusedNegative(F a, F b, F c) { return __builtin_fmaf(-a, b, c); }
+  static F Add(F a, F b) { return a + b; }
+  static F Mul(F a, F b) { return a * b; }
+  static F Div(F a, F b) { return a / b; }
+  static F Sqrt(F v) { return __builtin_sqrtf(v); }
   static F Relu(F z) { return 0.0f > z ? 0.0f : z; }
+  static F WherePositive(F h, F x) { return h > 0.0f ? x : 0.0f; }
+
+  // Two multiply-xorshift rounds, keyed before each: enough mixing for a coin, cheap in every instruction
+  // set.
+  static F Dropout(F x, std::uint32_t counter, const DropoutDraws& draws) {
+    std::uint32_t h = counter ^ draws.key0;
+    h = (h ^ (h >> 16)) * 0x7feb352du;
+    h ^= draws.key1;
+    h = (h ^ (h >> 15)) * 0x846ca68bu;
+    h ^= h >> 16;
+    return (h >> 1) < draws.threshold ? 0.0f : x;
+  }
+
+  static void Transpose(const float* from, float* to) {
+    for (int row = 0; row < 16; ++row)
+      for (int column = 0; column < 16; ++column) to[column * 16 + row] = from[row * 16 + column];
+  }
 };
 
 }  // namespace

@@ -2,11 +2,12 @@
 // as level_scalar.cc, ten times as fast.
 #include "kernels/level_scalar.h"
 #include "kernels/rfnn_loops.h"
+#include "kernels/train_loops.h"
 
 namespace ed3r {
 
 const DenseKernels& ScalarFmaKernels() {
-  static constexpr DenseKernels kKernels{AcrossCandidates, AcrossNeurons};
+  static constexpr DenseKernels kKernels{AcrossCandidates, AcrossNeurons, BlockGradient, AdamBlock};
   return kKernels;
 }
 

@@ -1,0 +1,154 @@
+// bench_kernels [--rounds N] [rc] [robot]
+//
+// Measures the hand-written kernels at the level in use (ED3R_SIMD) against the FMA peak of the core and
+// against other libraries, paired in one run on one core. "ratio" is the time over ours; results are compared
+// first.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "kernels/aligned_floats.h"
+#include "kernels/bench/fma_peak.h"
+#include "kernels/bench/paired.h"
+#include "kernels/bench/peers.h"
+#include "kernels/rfnn.h"
+
+namespace ed3r::bench {
+namespace {
+
+constexpr double kSampleSeconds = 2e-4;  // shorter than a time slice of a busy machine
+constexpr double kTolerance = 1e-4;  // of the largest value: libraries sum in other orders
+
+std::vector<float> Normal(std::size_t n, double sigma, std::mt19937* rng) {
+  std::normal_distribution<float> draw(0.0f, static_cast<float>(sigma));
+  std::vector<float> values(n);
+  for (float& v : values) v = draw(*rng);
+  return values;
+}
+
+// Random weights that keep the activations at order one (He).
+std::vector<float> RandomParameters(const DenseShape& shape, std::mt19937* rng) {
+  std::vector<float> flat;
+  for (int l = 0; l < shape.layers; ++l) {
+    const int in = shape.sizes[l], out = shape.sizes[l + 1];
+    for (float w : Normal(static_cast<std::size_t>(in) * out, std::sqrt(2.0 / in), rng)) flat.push_back(w);
+    for (float b : Normal(out, 0.1, rng)) flat.push_back(b);
+  }
+  return flat;
+}
+
+Contender FmaPeak(SimdLevel level) {
+  return {"FMA peak, this core", [level] { RunFmaPeak(level); }, RunFmaPeak(level)};
+}
+
+void CheckAgreement(const std::string& name, const std::vector<float>& ours,
+                    const std::vector<float>& theirs) {
+  float scale = 1e-30f, difference = 0.0f;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    scale = std::max(scale, std::abs(ours[i]));
+    difference = std::max(difference, std::abs(ours[i] - theirs[i]));
+  }
+  if (difference <= kTolerance * scale) return;
+  std::fprintf(stderr, "%s disagrees: difference %g of %g\n", name.c_str(), difference, scale);
+  std::exit(1);
+}
+
+// One decision: n candidates, of whose inputs the first n_state are the state.
+struct Case {
+  const char* title;
+  std::vector<int> sizes;
+  int n_state, n;
+};
+
+double DecisionFlops(const DenseShape& shape, int n_state, int n) {
+  double per_candidate = static_cast<double>(shape.sizes[0] - n_state) * shape.sizes[1];
+  for (int l = 1; l < shape.layers; ++l)
+    per_candidate += static_cast<double>(shape.sizes[l]) * shape.sizes[l + 1];
+  return 2.0 * (per_candidate * n + static_cast<double>(n_state) * shape.sizes[1]);
+}
+
+void MeasureDecision(const Case& c, int rounds) {
+  const SimdLevel level = ActiveSimdLevel();
+  const DenseShape shape = MakeDenseShape(c.sizes.data(), static_cast<int>(c.sizes.size()));
+  std::mt19937 rng(1);
+  const std::vector<float> flat = RandomParameters(shape, &rng);
+  AlignedFloats packed(PackedFloats(shape)), workspace(RfnnWorkspaceFloats(shape));
+  PackParameters(shape, flat.data(), packed.data());
+  const int n_action = shape.inputs() - c.n_state;
+  const std::vector<float> state = Normal(c.n_state, 1.0, &rng), actions = Normal(c.n * n_action, 1.0, &rng);
+  std::vector<float> inputs;
+  for (int k = 0; k < c.n; ++k) {
+    inputs.insert(inputs.end(), state.begin(), state.end());
+    inputs.insert(inputs.end(), actions.begin() + k * n_action, actions.begin() + (k + 1) * n_action);
+  }
+  std::vector<float> values(c.n);
+  const RfnnDecision decision{state.data(), c.n_state, actions.data(), c.n, values.data()};
+  const DenseNet net{shape, packed.data()};
+  const double flops = DecisionFlops(shape, c.n_state, c.n);
+
+  std::vector<std::string> missing;
+  std::vector<Contender> contenders;
+  contenders.push_back({std::string("hand, ") + SimdLevelName(level),
+                        [&] { RfnnArgmax(net, decision, workspace.data(), level); }, flops});
+  contenders[0].run();
+  std::vector<std::unique_ptr<InferencePeer>> peers;
+  std::vector<float> theirs(c.n);
+  volatile int chosen = 0;
+  for (const NamedInferencePeer& named : InferencePeers(&missing)) {
+    peers.push_back(named.make(shape, flat.data(), c.n));
+    InferencePeer* peer = peers.back().get();
+    contenders.push_back({named.name,
+                          [&, peer] {
+                            peer->Values(inputs.data(), theirs.data());
+                            chosen = static_cast<int>(std::max_element(theirs.begin(), theirs.end()) -
+                                                      theirs.begin());
+                          },
+                          flops});
+    contenders.back().run();
+    CheckAgreement(named.name, values, theirs);
+  }
+  contenders.push_back(FmaPeak(level));
+  PrintTable(c.title, contenders, RunPaired(contenders, rounds, kSampleSeconds));
+  for (const std::string& name : missing) std::printf("  %-22s skipped: not found by CMake\n", name.c_str());
+}
+
+int Main(int argc, char** argv) {
+  int rounds = 201;
+  std::vector<std::string> wanted;
+  for (int a = 1; a < argc; ++a) {
+    if (std::strcmp(argv[a], "--rounds") == 0 && a + 1 < argc)
+      rounds = std::max(1, std::atoi(argv[++a]));
+    else
+      wanted.push_back(argv[a]);
+  }
+  const auto is_wanted = [&](const char* name) {
+    return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  };
+  PinToThisCore();
+  std::printf("level %s, one core, medians of %d paired rounds; ratio = time / hand-written time\n",
+              SimdLevelName(ActiveSimdLevel()), rounds);
+  if (is_wanted("rc"))
+    MeasureDecision({"RC decision: 13-128-64-64-32-1, 1000 candidates", {13, 128, 64, 64, 32, 1}, 8, 1000},
+                    rounds);
+  if (is_wanted("robot"))
+    MeasureDecision({"Robot decision: 11-128-64-32-1, 3 actions", {11, 128, 64, 32, 1}, 9, 3}, rounds);
+  return 0;
+}
+
+}  // namespace
+}  // namespace ed3r::bench
+
+int main(int argc, char** argv) {
+  try {
+    return ed3r::bench::Main(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
