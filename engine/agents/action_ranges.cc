@@ -42,9 +42,11 @@ TiltInterval TiltCommands(const ActionRanges& ranges, const AgentsConfig& agents
           std::clamp(tilt_rad + 0.5 * ranges.tilt_rad, 0.0, full_rad)};
 }
 
-MotionCommand DrawCommand(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad, Stream& stream) {
+MotionCommand DrawCommand(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad,
+                          Stream& stream) {
   MotionCommand command;
-  for (int axis = 0; axis < 3; ++axis) command.displacement_m[axis] = stream.Uniform(-ranges.axis_m, ranges.axis_m);
+  for (int axis = 0; axis < 3; ++axis)
+    command.displacement_m[axis] = stream.Uniform(-ranges.axis_m, ranges.axis_m);
   command.turn_rad = stream.Uniform(-ranges.yaw_rad, ranges.yaw_rad);
   const TiltInterval tilt = TiltCommands(ranges, agents, tilt_rad);
   command.tilt_rad = stream.Uniform(tilt.low_rad, tilt.high_rad);

@@ -8,23 +8,24 @@
 namespace ed3r {
 
 struct ActionRanges {
-  double axis_m = 0.0;     // each displacement lies in [-axis_m, axis_m]
-  double yaw_rad = 0.0;    // the turn lies in [-yaw_rad, yaw_rad]
-  double tilt_rad = 0.0;   // width of the tilt interval
+  double axis_m = 0.0;    // each displacement lies in [-axis_m, axis_m]
+  double yaw_rad = 0.0;   // the turn lies in [-yaw_rad, yaw_rad]
+  double tilt_rad = 0.0;  // width of the tilt interval
 
   static ActionRanges Full(const AgentsConfig& agents);
   ActionRanges Decreased(const AgentsConfig& agents) const;  // line 9
   ActionRanges Increased(const AgentsConfig& agents) const;  // line 11; never beyond Full
 };
 
-// Interval of tilt commands: all of [0, tilt range] when the width is full, else centred on the present tilt and cut
-// to that interval.
+// Interval of tilt commands: all of [0, tilt range] when the width is full, else centred on the present tilt
+// and cut to that interval.
 struct TiltInterval {
   double low_rad = 0.0, high_rad = 0.0;
 };
 TiltInterval TiltCommands(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad);
 
 // A command drawn uniformly from the ranges. Takes exactly five draws.
-MotionCommand DrawCommand(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad, Stream& stream);
+MotionCommand DrawCommand(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad,
+                          Stream& stream);
 
 }  // namespace ed3r

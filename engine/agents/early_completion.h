@@ -10,11 +10,11 @@ namespace ed3r {
 
 // What the Algorithm orders for timestep k.
 struct CompletionOrder {
-  bool complete = false;             // line 5
-  bool hover = false;                // line 4
+  bool complete = false;  // line 5
+  bool hover = false;     // line 4
   ConfidenceBand band = ConfidenceBand::kNone;
   ActionRanges ranges;
-  std::optional<double> epsilon;     // forced value; none where normal operation decides (R20)
+  std::optional<double> epsilon;  // forced value; none where normal operation decides (R20)
 };
 
 class EarlyCompletion {

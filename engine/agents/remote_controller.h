@@ -22,7 +22,8 @@ struct MotionDecision {
 
 class RemoteController {
  public:
-  RemoteController(const Config& config, const Strategy& strategy, std::uint64_t seed, std::uint32_t scenario);
+  RemoteController(const Config& config, const Strategy& strategy, std::uint64_t seed,
+                   std::uint32_t scenario);
 
   MotionDecision ChooseMotion(const RcView& view, std::uint32_t timestep);
 

@@ -20,7 +20,8 @@ Execution DrawAllowed(const AllowedExecutions& allowed, Stream& stream) {
 
 }  // namespace
 
-RobotAgent::RobotAgent(const Config& config, const Strategy& strategy, std::uint64_t seed, std::uint32_t scenario)
+RobotAgent::RobotAgent(const Config& config, const Strategy& strategy, std::uint64_t seed,
+                       std::uint32_t scenario)
     : config_(config), strategy_(strategy), seed_(seed), scenario_(scenario) {}
 
 ExecutionDecision RobotAgent::ChooseExecution(const RobotView& view, std::uint32_t timestep) const {

@@ -1,4 +1,5 @@
-// The strategies as data: who decides what (paper: Result 2, Table of ablations; Appendix, Baselines; R25, R26).
+// The strategies as data: who decides what (paper: Result 2, Table of ablations; Appendix, Baselines; R25,
+// R26).
 #pragma once
 
 #include <array>
@@ -8,7 +9,6 @@
 #include <vector>
 
 #include "engine/agents/decisions.h"
-
 
 namespace ed3r {
 
@@ -27,12 +27,12 @@ struct AllowedExecutions {
 
 struct Strategy {
   std::string_view name;
-  MotionPolicy motion;              // how the RC chooses motion
-  ExecutionPolicy execution;        // how the robot chooses among `allowed`; a single one is fixed
+  MotionPolicy motion;        // how the RC chooses motion
+  ExecutionPolicy execution;  // how the robot chooses among `allowed`; a single one is fixed
   AllowedExecutions allowed;
   bool early_completion;
   bool region_avoidance;
-  std::string_view networks;        // warm-up whose networks it uses: a strategy name, "" for none
+  std::string_view networks;  // warm-up whose networks it uses: a strategy name, "" for none
 };
 
 std::span<const Strategy> Strategies();

@@ -1,4 +1,5 @@
-// What each agent may know (paper: State of the Environment). The mission fills these; an agent sees nothing else.
+// What each agent may know (paper: State of the Environment). The mission fills these; an agent sees nothing
+// else.
 #pragma once
 
 #include "engine/robot/motion.h"
@@ -17,14 +18,14 @@ struct RcView {
 struct RobotView {
   double yaw_rad = 0.0;
   double tilt_rad = 0.0;
-  double battery_ratio = 1.0;   // beta_k / beta_max
-  double cpu_ratio = 1.0;       // f_k / f_max
+  double battery_ratio = 1.0;  // beta_k / beta_max
+  double cpu_ratio = 1.0;      // f_k / f_max
   double rc_distance_m = 0.0;
   double bandwidth_hz = 0.0;
   double rate_bps = 0.0;
   double previous_scs = 0.0;
   double previous_energy_j = 0.0;
-  double rate_ratio = 0.0;      // d_k / (b_max se_max), for the rules of RBS (R25)
+  double rate_ratio = 0.0;  // d_k / (b_max se_max), for the rules of RBS (R25)
 };
 
 }  // namespace ed3r

@@ -38,14 +38,13 @@ MovementPower PaperMovementPower(const RobotConfig& robot, const EnvironmentConf
       break;
     case VerticalForm::kClimb:
       power.ascent_w = power.hover_w + weight_n * v;
-      power.descent_w = power.hover_w - weight_n * v;
+      power.descent_w = std::max(power.hover_w - weight_n * v, 0.0);  // a descent does not charge the battery
       break;
     case VerticalForm::kMgv:
       power.ascent_w = weight_n * v + drag_w;
       power.descent_w = weight_n * v - drag_w;
       break;
   }
-  power.descent_w = std::max(power.descent_w, 0.0);  // a falling robot does not charge its battery
   return power;
 }
 

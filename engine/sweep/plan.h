@@ -18,6 +18,11 @@ struct Arm {
   std::string name;
   Config config;
   std::vector<std::pair<std::string, std::string>> settings;  // what the axes set, for tables
+
+  // config.mission.world as the canonical text has it: relative to the sweep file's folder, or absolute where
+  // it was written so. config.mission.world itself can be opened as it stands. "" (a plan made by hand): the
+  // two are the same.
+  std::string world;
 };
 
 struct Stage {
@@ -35,7 +40,7 @@ struct SweepPlan {
   std::uint64_t seed = 0;
   std::vector<Stage> stages;
 
-  std::int64_t Missions() const;
+  std::int64_t Missions() const;  // of all stages and arms
   // Every stage, arm and parameter in order: equal plans give equal text, wherever the file lies.
   std::string CanonicalText() const;
 };

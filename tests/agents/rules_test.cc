@@ -41,7 +41,8 @@ TEST(RulesTest, BothAboveIsACoinFlip) {
 TEST(RulesTest, NoneAboveTakesTheNearest) {
   EXPECT_NEAR(Decide(0.80, 0.50).offload, 1.0, 1e-9);  // 0.05 below against 0.15 below
   EXPECT_EQ(Decide(0.60, 0.60).offload, 0.0);
-  EXPECT_EQ(Decide(0.85, 0.65).offload, 0.0);  // exactly at both thresholds: none exceeds, a tie stays on board
+  EXPECT_EQ(Decide(0.85, 0.65).offload,
+            0.0);  // exactly at both thresholds: none exceeds, a tie stays on board
 }
 
 TEST(RulesTest, ModelIsAKey) {

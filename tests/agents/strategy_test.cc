@@ -36,7 +36,8 @@ TEST(StrategyTest, UnknownNameIsRefusedWithTheList) {
     FAIL();
   } catch (const UserError& error) {
     EXPECT_STREQ(error.what(),
-                 "mission.strategy: 'edr3' is not allowed; allowed: random | random-offload | rbs | ed3r | ablation-1 | "
+                 "mission.strategy: 'edr3' is not allowed; allowed: random | random-offload | rbs | ed3r | "
+                 "ablation-1 | "
                  "ablation-2 | ablation-3 | ablation-4 | ecd2r; did you mean ed3r?");
   }
 }

@@ -1,0 +1,191 @@
+#include "engine/sweep/expand.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <map>
+#include <set>
+
+#include "engine/config/parameters.h"
+#include "engine/core/check.h"
+#include "engine/sweep/arm_name.h"
+#include "engine/sweep/sweep_file.h"
+
+namespace ed3r {
+namespace {
+
+void Apply(const Setting& setting, Arm& arm) {
+  const std::string problem = SetParameter(arm.config, setting.key, setting.text);
+  ED3R_CHECK(problem.empty(), problem);  // checked when it was read
+  if (setting.key == "mission.world") arm.world = setting.canonical;
+}
+
+// Combinations of the axes; the largest number there is when they are even more.
+std::int64_t Combinations(const std::vector<Axis>& axes) {
+  std::int64_t product = 1;
+  for (const Axis& axis : axes) {
+    if (__builtin_mul_overflow(product, static_cast<std::int64_t>(axis.points.size()), &product))
+      return std::numeric_limits<std::int64_t>::max();
+  }
+  return product;
+}
+
+std::string SizeText(std::int64_t size) {
+  return size == std::numeric_limits<std::int64_t>::max() ? fmt::format("more than {}", size)
+                                                          : std::to_string(size);
+}
+
+// Expands one stage.
+class StageExpander {
+ public:
+  StageExpander(Stage& stage, std::string at, std::vector<Axis> axes, std::vector<Condition> where)
+      : stage_(stage), at_(std::move(at)), axes_(std::move(axes)), where_(std::move(where)) {
+    CheckAxesDiffer(axes_);
+    for (const Axis& axis : axes_)
+      for (const AxisPoint& point : axis.points)
+        for (const Setting& setting : point.settings) axis_keys_.insert(setting.key);
+  }
+
+  const std::string& AxesAt() const { return axes_.empty() ? at_ : axes_[0].at; }
+  std::int64_t Size() const { return Combinations(axes_); }
+
+  void Expand(const std::vector<Setting>& fixed, const std::vector<Setting>& overrides,
+              const std::string& top_folder) {
+    CheckOffAxes(fixed, overrides);
+    fixed_ = MergedSettings(fixed, overrides);
+    Arm common;
+    common.world = common.config.mission.world;
+    common.config.mission.world = WorldPath(top_folder, common.world);
+    for (const Setting& setting : fixed_) Apply(setting, common);
+    for (std::int64_t index = 0; index < Size(); ++index) AddCombination(index, common);
+    if (stage_.arms.empty())
+      FailAt(where_.front().At(),
+             fmt::format("where: none of the {} combinations of stage '{}' is kept; allowed: at least one",
+                         Size(), stage_.name));
+  }
+
+ private:
+  void CheckOffAxes(const std::vector<Setting>& fixed, const std::vector<Setting>& overrides) const {
+    for (const Setting& setting : overrides) {
+      if (const Setting* axis = FindOnAxes(axes_, setting.key))
+        FailAt(setting.at,
+               fmt::format("{}: is not allowed here: the sweep varies it, at {}", setting.key, axis->at));
+    }
+    for (const Setting& setting : fixed) {
+      if (const Setting* axis = FindOnAxes(axes_, setting.key))
+        FailAt(setting.at, fmt::format("{}: '{}' is not allowed here: the sweep varies it, at {}",
+                                       setting.key, setting.canonical, axis->at));
+    }
+  }
+
+  // The first axis is the slowest, as nested loops in the order written.
+  std::vector<const AxisPoint*> PointsAt(std::int64_t index) const {
+    std::vector<const AxisPoint*> points(axes_.size());
+    for (std::size_t i = axes_.size(); i-- > 0;) {
+      const auto count = static_cast<std::int64_t>(axes_[i].points.size());
+      points[i] = &axes_[i].points[static_cast<std::size_t>(index % count)];
+      index /= count;
+    }
+    return points;
+  }
+
+  void AddCombination(std::int64_t index, const Arm& common) {
+    const std::vector<const AxisPoint*> points = PointsAt(index);
+    Arm arm = common;
+    for (const AxisPoint* point : points) {
+      for (const Setting& setting : point->settings) {
+        Apply(setting, arm);
+        arm.settings.emplace_back(setting.key, setting.canonical);
+      }
+    }
+    for (const Condition& condition : where_)
+      if (!condition.Holds(arm.config)) return;
+    arm.name = ArmName(stage_, arm.config, points, axis_keys_);
+    if (const std::string problem = CheckParameters(arm.config); !problem.empty())
+      FailAt(PlaceOf(problem, points), fmt::format("{} (arm '{}')", problem, arm.name));
+    const std::string at = points.empty() ? at_ : points.back()->at;
+    const auto [first, is_new] = name_places_.emplace(arm.name, at);
+    if (!is_new)
+      FailAt(at,
+             fmt::format("two arms of stage '{}' have the name '{}', the first at {}; a list can name them",
+                         stage_.name, arm.name, first->second));
+    stage_.arms.push_back(std::move(arm));
+  }
+
+  // Where to look for a rule between parameters that is broken: the setting of the parameter that it blames,
+  // else (that one has its default) of another one that it names.
+  std::string PlaceOf(const std::string& problem, const std::vector<const AxisPoint*>& points) const {
+    std::vector<const Setting*> settings;
+    for (const AxisPoint* point : points)
+      for (const Setting& setting : point->settings) settings.push_back(&setting);
+    for (const Setting& setting : fixed_) settings.push_back(&setting);
+    for (const Setting* setting : settings)
+      if (problem.starts_with(setting->key + ":")) return setting->at;
+    for (const Setting* setting : settings)
+      if (problem.find(" " + setting->key + " ") != std::string::npos) return setting->at;
+    return at_;
+  }
+
+  Stage& stage_;
+  std::string at_;
+  std::vector<Axis> axes_;
+  std::set<std::string> axis_keys_;
+  std::vector<Condition> where_;
+  std::vector<Setting> fixed_;
+  std::map<std::string, std::string> name_places_;
+};
+
+template <class T>
+std::vector<T> Concatenated(const std::optional<std::vector<T>>& a, const std::optional<std::vector<T>>& b) {
+  std::vector<T> all = a.value_or(std::vector<T>());
+  if (b) all.insert(all.end(), b->begin(), b->end());
+  return all;
+}
+
+// How many missions each arm of a stage flies, and where that is said.
+WrittenCount MissionsOf(const StageSource& stage, const SweepSource& source,
+                        const std::optional<WrittenCount>& override) {
+  if (stage.kind == StageKind::kTrain) return {0, stage.at};
+  if (override) return *override;
+  if (stage.section.missions) return *stage.section.missions;
+  if (source.top.missions) return *source.top.missions;
+  FailAt(stage.at,
+         fmt::format("missions: is missing in stage '{}'; allowed: 1 .. {}", stage.name, kMaxMissions));
+}
+
+}  // namespace
+
+std::vector<Stage> ExpandStages(const SweepSource& source, const std::vector<Setting>& overrides,
+                                const std::optional<WrittenCount>& missions) {
+  std::vector<StageSource> written = source.stages.value_or(std::vector<StageSource>());
+  if (!source.stages) written.push_back({"online", source.at, StageKind::kFly, {}, {}});
+  std::vector<Stage> stages;
+  std::int64_t all_arms = 0;
+  std::int64_t all_missions = 0;
+  for (const StageSource& from : written) {
+    const WrittenCount count = MissionsOf(from, source, missions);
+    stages.push_back({from.name, from.kind, from.after, count.value, {}});
+    Stage& stage = stages.back();
+    StageExpander expander(stage, from.at, Concatenated(source.top.axes, from.section.axes),
+                           Concatenated(source.top.where, from.section.where));
+    if (expander.Size() > kMaxArms - all_arms)
+      FailAt(
+          expander.AxesAt(),
+          fmt::format("{} combinations in stage '{}'{} are not allowed; allowed: at most {} arms in a sweep",
+                      SizeText(expander.Size()), stage.name,
+                      all_arms > 0 ? fmt::format(", after {} arms,", all_arms) : "", kMaxArms));
+    const std::vector<Setting> under =
+        from.section.axes ? SettingsOffAxes(source.top.set, *from.section.axes) : source.top.set;
+    expander.Expand(MergedSettings(under, from.section.set), overrides, FolderOf(source.file));
+    all_arms += static_cast<std::int64_t>(stage.arms.size());
+    all_missions += static_cast<std::int64_t>(stage.arms.size()) * stage.missions;
+    if (all_missions > kMaxMissions)
+      FailAt(count.at,
+             fmt::format("{} missions in the stages up to '{}' are not allowed; allowed: at most {} "
+                         "in a sweep",
+                         all_missions, stage.name, kMaxMissions));
+  }
+  return stages;
+}
+
+}  // namespace ed3r

@@ -1,0 +1,30 @@
+#include "engine/sweep/plan.h"
+
+#include <fmt/format.h>
+
+#include "engine/config/parameters.h"
+
+namespace ed3r {
+
+std::int64_t SweepPlan::Missions() const {
+  std::int64_t sum = 0;
+  for (const Stage& stage : stages) sum += static_cast<std::int64_t>(stage.arms.size()) * stage.missions;
+  return sum;
+}
+
+std::string SweepPlan::CanonicalText() const {
+  std::string text = fmt::format("sweep={}\nseed={}\n", name, seed);
+  for (const Stage& stage : stages) {
+    text += fmt::format("stage={}\nkind={}\nafter={}\nmissions={}\n", stage.name,
+                        stage.kind == StageKind::kFly ? "fly" : "train", fmt::join(stage.after, ","),
+                        stage.missions);
+    for (const Arm& arm : stage.arms) {
+      Config config = arm.config;
+      if (!arm.world.empty()) config.mission.world = arm.world;
+      text += fmt::format("arm={}\n", arm.name) + ed3r::CanonicalText(config);
+    }
+  }
+  return text;
+}
+
+}  // namespace ed3r

@@ -1,0 +1,106 @@
+#include "engine/sweep/setting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <system_error>
+
+#include "engine/config/parameters.h"
+
+namespace ed3r {
+namespace {
+
+constexpr std::string_view kWorldKey = "mission.world";
+
+std::filesystem::path Absolute(const std::string& path, const std::string& at) {
+  std::error_code error;
+  // "" is the present folder, which std::filesystem::absolute does not take.
+  const std::filesystem::path absolute = std::filesystem::absolute(path.empty() ? "." : path, error);
+  if (error) FailAt(at, fmt::format("'{}': {}", path, error.message()));
+  return (absolute / "").lexically_normal();
+}
+
+}  // namespace
+
+std::string FullKey(std::string_view written) {
+  return written == "strategy" ? "mission.strategy" : std::string(written);
+}
+
+std::string FolderOf(const std::string& file) { return std::filesystem::path(file).parent_path().string(); }
+
+std::string WorldPath(const std::string& folder, const std::string& written) {
+  return (std::filesystem::path(folder) / written).lexically_normal().string();
+}
+
+Setting SettingReader::Read(const std::string& written_key, const std::string& key_at,
+                            const std::string& text, const std::string& at) const {
+  Setting setting{FullKey(written_key), text, text, at};
+  const auto& keys = ParameterKeys();
+  const bool known = std::find(keys.begin(), keys.end(), setting.key) != keys.end();
+  Config scratch;
+  if (const std::string problem = SetParameter(scratch, setting.key, text); !problem.empty())
+    FailAt(known ? at : key_at, problem);
+  if (check_) {
+    if (const std::string problem = check_(setting.key, text); !problem.empty()) FailAt(at, problem);
+  }
+  if (setting.key == kWorldKey) {
+    ResolveWorld(setting);
+  } else {
+    setting.text = setting.canonical = GetParameter(scratch, setting.key);  // 1e0, 1.0 and 1 are one value
+  }
+  return setting;
+}
+
+void SettingReader::ResolveWorld(Setting& setting) const {
+  const std::filesystem::path written(setting.text);
+  setting.text = WorldPath(folder_, setting.text);
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(setting.text, error))
+    FailAt(setting.at, fmt::format("{}: '{}' is not a file; looked for '{}'", setting.key, setting.canonical,
+                                   setting.text));
+  if (written.is_absolute() || keep_absolute_) {
+    setting.canonical = setting.text;
+  } else {
+    // Both ends absolute: the path must not depend on how the command named the sweep file.
+    std::filesystem::path target = Absolute(FolderOf(setting.text), setting.at);
+    target /= std::filesystem::path(setting.text).filename();
+    setting.canonical = target.lexically_relative(Absolute(top_folder_, setting.at)).generic_string();
+  }
+}
+
+std::vector<Setting> SettingReader::ReadMap(const YamlNode& map, std::string_view what,
+                                            const std::vector<std::string>& skipped) const {
+  if (map.kind != YamlNode::Kind::kMap)
+    FailAt(map.at, fmt::format("{}: {} is not allowed; allowed: a map of parameters", what, Described(map)));
+  std::vector<Setting> settings;
+  AppendMap(map, "", skipped, settings);
+  std::map<std::string, std::string> places;
+  for (const Setting& setting : settings) {
+    const auto [first, is_new] = places.emplace(setting.key, setting.at);
+    if (!is_new)
+      FailAt(setting.at, fmt::format("{}: duplicate key; it stands first at {}", setting.key, first->second));
+  }
+  return settings;
+}
+
+void SettingReader::AppendMap(const YamlNode& map, const std::string& prefix,
+                              const std::vector<std::string>& skipped, std::vector<Setting>& settings) const {
+  for (const YamlEntry& entry : map.entries) {
+    if (std::find(skipped.begin(), skipped.end(), entry.key) != skipped.end()) continue;
+    const std::string key = prefix + entry.key;
+    if (entry.value.kind == YamlNode::Kind::kMap) {
+      AppendMap(entry.value, key + ".", {}, settings);
+    } else if (entry.value.kind == YamlNode::Kind::kScalar) {
+      settings.push_back(Read(key, entry.at, entry.value.text, entry.value.at));
+    } else {
+      FailAt(entry.value.at,
+             fmt::format("{}: {} is not allowed here; allowed: one value (several make an axis, "
+                         "under sweep)",
+                         FullKey(key), Described(entry.value)));
+    }
+  }
+}
+
+}  // namespace ed3r

@@ -1,0 +1,65 @@
+// One parameter value as someone wrote it: in a sweep file's `set`, on an axis, or after --set.
+// Errors: UserError, one line that starts with where it was written. Threads: nothing is shared.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/config/config.h"
+#include "engine/sweep/yaml_reader.h"
+
+namespace ed3r {
+
+// A check that the parameters' own description cannot make, such as the names of the strategies, which a
+// later layer knows: "" or a clause as SetParameter's ("mission.strategy: 'rsb' ...; did you mean rbs?").
+using ValueCheck = std::function<std::string(const std::string& key, const std::string& value)>;
+
+struct Setting {
+  std::string key;        // full: "mission.strategy" even where "strategy" was written
+  std::string text;       // read by SetParameter; a world file is a path that can be opened from here
+  std::string canonical;  // the same wherever the sweep lies: differs from text for a world file only
+  std::string at;         // where the value was written
+};
+
+// `strategy` is short for mission.strategy; all other keys are written in full.
+std::string FullKey(std::string_view written);
+
+// The folder that holds a file, "" for the present one.
+std::string FolderOf(const std::string& file);
+
+// The world file as it can be opened, when it is written in a file of this folder.
+std::string WorldPath(const std::string& folder, const std::string& written);
+
+// Reads the settings of one file (or of the command line).
+class SettingReader {
+ public:
+  // Paths are relative to `folder`. Their canonical form is relative to `top_folder`, the sweep file's,
+  // unless they are absolute as written or `keep_absolute` says that the way to `folder` was.
+  SettingReader(std::string folder, std::string top_folder, bool keep_absolute, ValueCheck check)
+      : folder_(std::move(folder)),
+        top_folder_(std::move(top_folder)),
+        keep_absolute_(keep_absolute),
+        check_(std::move(check)) {}
+
+  // Checks key and value. `key_at` and `at` say where each was written.
+  Setting Read(const std::string& written_key, const std::string& key_at, const std::string& text,
+               const std::string& at) const;
+
+  // A map of key: value; nested maps and dotted keys mean the same. Keys in `skipped` are left out.
+  std::vector<Setting> ReadMap(const YamlNode& map, std::string_view what,
+                               const std::vector<std::string>& skipped = {}) const;
+
+ private:
+  void AppendMap(const YamlNode& map, const std::string& prefix, const std::vector<std::string>& skipped,
+                 std::vector<Setting>& settings) const;
+  void ResolveWorld(Setting& setting) const;
+
+  std::string folder_;
+  std::string top_folder_;
+  bool keep_absolute_;
+  ValueCheck check_;
+};
+
+}  // namespace ed3r

@@ -1,0 +1,52 @@
+#include "engine/sweep/sweep_file.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "engine/sweep/expand.h"
+#include "engine/sweep/sweep_source.h"
+
+namespace ed3r {
+namespace {
+
+std::vector<Setting> ReadOverrides(const std::vector<std::string>& written, const std::string& file,
+                                   const ValueCheck& check) {
+  const SettingReader reader("", FolderOf(file), false, check);
+  std::vector<Setting> settings;
+  std::map<std::string, std::string> places;
+  for (const std::string& text : written) {
+    const std::string at = "--set " + text;
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) FailAt(at, "is not allowed; allowed: KEY=VALUE");
+    settings.push_back(reader.Read(text.substr(0, equals), at, text.substr(equals + 1), at));
+    const auto [first, is_new] = places.emplace(settings.back().key, at);
+    if (!is_new) FailAt(at, fmt::format("{}: is set twice, first by {}", settings.back().key, first->second));
+  }
+  return settings;
+}
+
+std::optional<WrittenCount> CheckedMissions(const std::optional<int>& missions) {
+  if (!missions) return std::nullopt;
+  const std::string at = fmt::format("--missions {}", *missions);
+  if (*missions < 1 || *missions > kMaxMissions)
+    FailAt(at, fmt::format("missions: '{}' is not allowed; allowed: 1 .. {}", *missions, kMaxMissions));
+  return WrittenCount{*missions, at};
+}
+
+}  // namespace
+
+SweepPlan LoadSweep(const std::string& file, const SweepOverrides& overrides, const ValueCheck& check) {
+  const SweepSource source = ReadSweepSource(file, check);
+  if (!source.name) FailAt(source.at, "name: is missing; a sweep's name is that of its results");
+  SweepPlan plan;
+  plan.name = *source.name;
+  plan.question = source.question;
+  plan.file = file;
+  plan.seed = overrides.seed.value_or(source.seed.value_or(0));
+  plan.stages =
+      ExpandStages(source, ReadOverrides(overrides.set, file, check), CheckedMissions(overrides.missions));
+  return plan;
+}
+
+}  // namespace ed3r

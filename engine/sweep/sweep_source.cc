@@ -1,0 +1,166 @@
+#include "engine/sweep/sweep_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "engine/core/suggest.h"
+#include "engine/sweep/sweep_file.h"
+
+namespace ed3r {
+namespace {
+
+SweepSection ReadSection(const YamlNode& map, const SettingReader& reader) {
+  SweepSection section;
+  if (const YamlNode* missions = Find(map, "missions"))
+    section.missions = {static_cast<int>(WholeNumberOf(*missions, "missions", 1, kMaxMissions)),
+                        missions->at};
+  if (const YamlNode* set = Find(map, "set")) section.set = reader.ReadMap(*set, "set");
+  if (const YamlNode* sweep = Find(map, "sweep")) section.axes = ReadAxes(*sweep, reader);
+  if (const YamlNode* where = Find(map, "where")) section.where = ReadConditions(*where, reader);
+  return section;
+}
+
+StageKind ReadKind(const YamlNode& kind) {
+  const std::string& text = TextOf(kind, "kind");
+  if (text == "fly") return StageKind::kFly;
+  if (text == "train") return StageKind::kTrain;
+  FailAt(kind.at, fmt::format("kind: '{}' is not allowed; allowed: fly | train", text));
+}
+
+void AppendAfter(const YamlNode& node, const std::vector<std::string>& earlier,
+                 std::vector<std::string>& after) {
+  const std::string& name = TextOf(node, "after");
+  if (std::find(earlier.begin(), earlier.end(), name) == earlier.end()) {
+    const std::string nearest = NearestWord(name, earlier);
+    FailAt(node.at, fmt::format("after: '{}' is not allowed; allowed: stages that stand above ({}){}", name,
+                                earlier.empty() ? "none" : Joined(earlier),
+                                nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest)));
+  }
+  if (std::find(after.begin(), after.end(), name) != after.end())
+    FailAt(node.at, fmt::format("after: '{}' stands here twice", name));
+  after.push_back(name);
+}
+
+StageSource ReadStage(const YamlNode& node, const std::vector<std::string>& earlier,
+                      const SettingReader& reader) {
+  ExpectKeys(node, "a stage", {"name", "kind", "after", "missions", "set", "sweep", "where"});
+  StageSource stage;
+  stage.at = node.at;
+  const YamlNode* name = Find(node, "name");
+  if (name == nullptr) FailAt(node.at, "name: is missing; every stage has one");
+  stage.name = NameOfThing(*name, "name");
+  if (std::find(earlier.begin(), earlier.end(), stage.name) != earlier.end())
+    FailAt(name->at, fmt::format("name: stage '{}' stands above already", stage.name));
+  if (const YamlNode* kind = Find(node, "kind")) stage.kind = ReadKind(*kind);
+  if (const YamlNode* after = Find(node, "after")) {
+    if (after->kind == YamlNode::Kind::kList) {
+      for (const YamlNode& item : after->items) AppendAfter(item, earlier, stage.after);
+    } else {
+      AppendAfter(*after, earlier, stage.after);
+    }
+  }
+  stage.section = ReadSection(node, reader);
+  if (stage.kind == StageKind::kTrain && stage.section.missions)
+    FailAt(stage.section.missions->at, "missions: is not allowed in a stage of kind train, which flies none");
+  return stage;
+}
+
+std::vector<StageSource> ReadStages(const YamlNode& node, const SettingReader& reader) {
+  if (node.kind != YamlNode::Kind::kList || node.items.empty())
+    FailAt(node.at, fmt::format("stages: {} is not allowed; allowed: a list of stages",
+                                node.kind == YamlNode::Kind::kList ? "an empty list" : Described(node)));
+  std::vector<StageSource> stages;
+  std::vector<std::string> names;
+  for (const YamlNode& item : node.items) {
+    stages.push_back(ReadStage(item, names, reader));
+    names.push_back(stages.back().name);
+  }
+  return stages;
+}
+
+void MergeUnder(SweepSource& source, SweepSource base) {
+  SweepSection& top = source.top;
+  // A base file's setting is a default, so an axis may vary it; within one file that is a contradiction.
+  if (top.axes) base.top.set = SettingsOffAxes(base.top.set, *top.axes);
+  top.set = MergedSettings(base.top.set, top.set);
+  if (!top.missions) top.missions = std::move(base.top.missions);
+  if (!top.axes) top.axes = std::move(base.top.axes);
+  if (!top.where) top.where = std::move(base.top.where);
+  if (!source.seed) source.seed = base.seed;
+  if (!source.stages) source.stages = std::move(base.stages);
+}
+
+class SourceReader {
+ public:
+  SourceReader(std::string top_file, const ValueCheck& check)
+      : top_folder_(FolderOf(top_file)), check_(check) {}
+
+  SweepSource Read(const std::string& file, bool keep_absolute) {
+    const YamlFile yaml = ReadYamlFile(file);
+    if (yaml.root.kind == YamlNode::Kind::kNull)
+      FailAt(yaml.root.at, "the file is empty; a sweep has at least a name and missions");
+    ExpectKeys(yaml.root, "a sweep file",
+               {"name", "base", "missions", "seed", "set", "sweep", "where", "stages"});
+    const SettingReader reader(FolderOf(file), top_folder_, keep_absolute, check_);
+    SweepSource source;
+    source.file = file;
+    source.at = yaml.root.at;
+    source.question = yaml.first_comment;
+    if (const YamlNode* name = Find(yaml.root, "name")) source.name = NameOfThing(*name, "name");
+    if (const YamlNode* seed = Find(yaml.root, "seed"))
+      source.seed = WholeNumberOf(*seed, "seed", 0, std::numeric_limits<std::uint64_t>::max());
+    source.top = ReadSection(yaml.root, reader);
+    if (const YamlNode* stages = Find(yaml.root, "stages")) source.stages = ReadStages(*stages, reader);
+    opened_.push_back(file);
+    if (const YamlNode* base = Find(yaml.root, "base"))
+      MergeUnder(source, ReadBase(*base, file, keep_absolute));
+    return source;
+  }
+
+ private:
+  SweepSource ReadBase(const YamlNode& base, const std::string& file, bool keep_absolute) {
+    const std::filesystem::path written(TextOf(base, "base"));
+    const std::string path = (std::filesystem::path(FolderOf(file)) / written).lexically_normal().string();
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error))
+      FailAt(base.at, fmt::format("base: '{}' is not a file; looked for '{}'", written.string(), path));
+    for (const std::string& opened : opened_) {
+      if (std::filesystem::equivalent(opened, path, error))
+        FailAt(base.at, fmt::format("base: '{}' leads back to {}", written.string(), opened));
+    }
+    return Read(path, keep_absolute || written.is_absolute());
+  }
+
+  std::string top_folder_;
+  const ValueCheck& check_;
+  std::vector<std::string> opened_;
+};
+
+}  // namespace
+
+SweepSource ReadSweepSource(const std::string& file, const ValueCheck& check) {
+  return SourceReader(file, check).Read(file, false);
+}
+
+std::vector<Setting> MergedSettings(const std::vector<Setting>& under, const std::vector<Setting>& over) {
+  std::vector<Setting> merged;
+  for (const Setting& setting : under) {
+    const bool replaced =
+        std::any_of(over.begin(), over.end(), [&](const Setting& s) { return s.key == setting.key; });
+    if (!replaced) merged.push_back(setting);
+  }
+  merged.insert(merged.end(), over.begin(), over.end());
+  return merged;
+}
+
+std::vector<Setting> SettingsOffAxes(const std::vector<Setting>& settings, const std::vector<Axis>& axes) {
+  std::vector<Setting> kept;
+  for (const Setting& setting : settings)
+    if (FindOnAxes(axes, setting.key) == nullptr) kept.push_back(setting);
+  return kept;
+}
+
+}  // namespace ed3r

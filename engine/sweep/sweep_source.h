@@ -1,0 +1,60 @@
+// A sweep file as written, its base files merged underneath, before expansion.
+//
+// Merging: settings of `set` one by one, the nearer file's winning; `missions`, `seed`, `sweep`, `where` and
+// `stages` each as a whole. `name` and the question are the top file's own. An axis replaces a base file's
+// setting of the same key.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/sweep/axis.h"
+#include "engine/sweep/condition.h"
+#include "engine/sweep/plan.h"
+#include "engine/sweep/setting.h"
+
+namespace ed3r {
+
+struct WrittenCount {
+  int value = 0;
+  std::string at;
+};
+
+// What the top level of a file and each of its stages have in common.
+struct SweepSection {
+  std::optional<WrittenCount> missions;
+  std::vector<Setting> set;
+  std::optional<std::vector<Axis>> axes;
+  std::optional<std::vector<Condition>> where;
+};
+
+struct StageSource {
+  std::string name;
+  std::string at;
+  StageKind kind = StageKind::kFly;
+  std::vector<std::string> after;
+  SweepSection section;
+};
+
+struct SweepSource {
+  std::string file;
+  std::string at;  // where its first key stands
+  std::string question;
+  std::optional<std::string> name;
+  std::optional<std::uint64_t> seed;
+  SweepSection top;
+  std::optional<std::vector<StageSource>> stages;
+};
+
+// Throws UserError.
+SweepSource ReadSweepSource(const std::string& file, const ValueCheck& check);
+
+// Settings of `under` that `over` does not set, then those of `over`.
+std::vector<Setting> MergedSettings(const std::vector<Setting>& under, const std::vector<Setting>& over);
+
+// The settings whose keys are on none of the axes.
+std::vector<Setting> SettingsOffAxes(const std::vector<Setting>& settings, const std::vector<Axis>& axes);
+
+}  // namespace ed3r

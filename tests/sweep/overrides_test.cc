@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include "tests/sweep/scratch.h"
+
+namespace ed3r {
+namespace {
+
+constexpr const char* kStudy =
+    "name: x\nmissions: 10\nseed: 5\nset: {robot.mass_kg: 2}\nsweep: {strategy: [rbs, random]}\n";
+
+SweepOverrides Set(std::vector<std::string> set) { return {std::move(set), {}, {}}; }
+
+TEST(OverridesTest, WinOverSetAtEveryLevel) {
+  const SweepPlan plan = LoadText(
+      "name: x\nmissions: 1\nset: {robot.mass_kg: 2}\n"
+      "stages:\n  - {name: a, set: {robot.mass_kg: 3}}\n  - {name: b}\n",
+      Set({"robot.mass_kg=4", "robot.speed_mps=2"}));
+  for (const Stage& stage : plan.stages) {
+    EXPECT_EQ(stage.arms[0].config.robot.mass_kg, 4.0);
+    EXPECT_EQ(stage.arms[0].config.robot.speed_mps, 2.0);
+    EXPECT_TRUE(stage.arms[0].settings.empty());
+  }
+}
+
+TEST(OverridesTest, SeedAndMissions) {
+  const SweepPlan plan = LoadText(kStudy, {.set = {}, .seed = 77, .missions = 4});
+  EXPECT_EQ(plan.seed, 77u);
+  EXPECT_EQ(plan.Missions(), 8);
+  EXPECT_EQ(Refusal(kStudy, {.set = {}, .seed = {}, .missions = 0}),
+            "--missions 0: missions: '0' is not allowed; allowed: 1 .. 10000000");
+  EXPECT_EQ(
+      Refusal(kStudy, {.set = {}, .seed = {}, .missions = 9'000'000}),
+      "--missions 9000000: 18000000 missions in the stages up to 'online' are not allowed; allowed: at most "
+      "10000000 in a sweep");
+}
+
+TEST(OverridesTest, StandInForMissingMissions) {
+  EXPECT_EQ(LoadText("name: x\n", {.set = {}, .seed = {}, .missions = 4}).Missions(), 4);
+}
+
+TEST(OverridesTest, RefusalsHaveNoFile) {
+  EXPECT_EQ(Refusal(kStudy, Set({"robot.mas_kg=2"})),
+            "--set robot.mas_kg=2: robot.mas_kg: unknown key; did you mean robot.mass_kg?");
+  EXPECT_EQ(Refusal(kStudy, Set({"robot.mass_kg=-1"})),
+            "--set robot.mass_kg=-1: robot.mass_kg: '-1' is not allowed; allowed: 0.05 .. 50 kg");
+  EXPECT_EQ(Refusal(kStudy, Set({"robot.mass_kg"})),
+            "--set robot.mass_kg: is not allowed; allowed: KEY=VALUE");
+  EXPECT_EQ(Refusal(kStudy, Set({""})), "--set : is not allowed; allowed: KEY=VALUE");
+  EXPECT_EQ(Refusal(kStudy, Set({"robot.mass_kg=1", "robot.mass_kg=2"})),
+            "--set robot.mass_kg=2: robot.mass_kg: is set twice, first by --set robot.mass_kg=1");
+  EXPECT_EQ(Refusal(kStudy, Set({"robot.mass_kg=1\n2"})),
+            "--set robot.mass_kg=1\\x0a2: robot.mass_kg: '1\\x0a2' is not allowed; allowed: 0.05 .. 50 kg");
+  EXPECT_EQ(
+      Refusal(kStudy, Set({"agents.eta_int=0.9"})),
+      "--set agents.eta_int=0.9: agents.eta_int: '0.9' is not allowed; at most agents.eta_min = 0.75 (arm "
+      "'rbs')");
+}
+
+TEST(OverridesTest, MayNotSetWhatAnAxisVaries) {
+  EXPECT_EQ(
+      Refusal(kStudy, Set({"strategy=ed3r"})),
+      "--set strategy=ed3r: mission.strategy: is not allowed here: the sweep varies it, at x.yaml:5:20");
+}
+
+TEST(OverridesTest, LaterLayersCheckWhatTheyKnow) {
+  const ScratchFolder scratch;
+  const ValueCheck check = [](const std::string& key, const std::string& value) {
+    if (key != "mission.strategy" || value == "rbs" || value == "random") return std::string();
+    return key + ": '" + value + "' is not a strategy";
+  };
+  const std::string good = scratch.Write("good.yaml", kStudy);
+  EXPECT_EQ(LoadSweep(good, {}, check).stages[0].arms.size(), 2u);
+  const auto refusal = [&](const std::string& text, const SweepOverrides& overrides = {}) {
+    try {
+      LoadSweep(scratch.Write("x.yaml", text), overrides, check);
+    } catch (const UserError& error) {
+      return std::string(error.what()).substr(error.what()[0] == '-' ? 0 : scratch.Path().size() + 1);
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refusal("name: x\nmissions: 1\nsweep: {strategy: [rbs, rsb]}\n"),
+            "x.yaml:3:25: mission.strategy: 'rsb' is not a strategy");
+  EXPECT_EQ(refusal("name: x\nmissions: 1\nwhere: strategy != rsb\n"),
+            "x.yaml:3:8: mission.strategy: 'rsb' is not a strategy");
+  EXPECT_EQ(refusal("name: x\nmissions: 1\n", Set({"strategy=rsb"})),
+            "--set strategy=rsb: mission.strategy: 'rsb' is not a strategy");
+}
+
+}  // namespace
+}  // namespace ed3r

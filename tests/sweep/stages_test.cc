@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include "tests/sweep/scratch.h"
+
+namespace ed3r {
+namespace {
+
+using Names = std::vector<std::string>;
+
+constexpr const char* kStudy =
+    "name: x\n"
+    "missions: 850\n"
+    "set: {robot.mass_kg: 2, agents.eta_min: 0.7}\n"
+    "stages:\n"
+    "  - {name: warmup, missions: 2040, set: {strategy: random, robot.mass_kg: 1.5}}\n"
+    "  - {name: training, kind: train, after: warmup, sweep: {agents.eta_min: [0.65, 0.75]}}\n"
+    "  - name: online\n"
+    "    after: [warmup, training]\n"
+    "    sweep: {strategy: [rbs, ed3r], agents.eta_min: [0.65, 0.75]}\n"
+    "    where: strategy == ed3r or agents.eta_min == 0.75\n";
+
+TEST(StagesTest, EachAddsToTheTopLevel) {
+  const SweepPlan plan = LoadText(kStudy);
+  ASSERT_EQ(plan.stages.size(), 3u);
+  const auto& [warmup, training, online] = std::tie(plan.stages[0], plan.stages[1], plan.stages[2]);
+  EXPECT_EQ(warmup.missions, 2040);
+  EXPECT_EQ(ArmNames(warmup), Names{"warmup"});
+  EXPECT_EQ(warmup.arms[0].config.robot.mass_kg, 1.5);
+  EXPECT_EQ(warmup.arms[0].config.agents.eta_min, 0.7);
+  EXPECT_EQ(training.kind, StageKind::kTrain);
+  EXPECT_EQ(training.missions, 0);
+  EXPECT_EQ(training.after, Names{"warmup"});
+  EXPECT_EQ(ArmNames(training), (Names{"training,eta_min=0.65", "training,eta_min=0.75"}));
+  EXPECT_EQ(training.arms[1].config.robot.mass_kg, 2.0);
+  EXPECT_EQ(online.after, (Names{"warmup", "training"}));
+  EXPECT_EQ(online.missions, 850);
+  EXPECT_EQ(ArmNames(online), (Names{"rbs,eta_min=0.75", "ed3r-65", "ed3r-75"}));
+  EXPECT_EQ(plan.Missions(), 2040 + 3 * 850);
+}
+
+TEST(StagesTest, TopLevelAxesAndConditionsHoldInEveryStage) {
+  const SweepPlan plan = LoadText(
+      "name: x\nmissions: 1\nsweep: {robot.mass_kg: [1, 2, 3]}\nwhere: robot.mass_kg != 2\n"
+      "stages:\n"
+      "  - {name: a}\n"
+      "  - {name: b, sweep: {strategy: [rbs, random]}, where: [strategy == rbs or robot.mass_kg < 3]}\n");
+  EXPECT_EQ(ArmNames(plan.stages[0]), (Names{"rbs,mass_kg=1", "rbs,mass_kg=3"}));
+  EXPECT_EQ(ArmNames(plan.stages[1]), (Names{"rbs,mass_kg=1", "warmup,mass_kg=1", "rbs,mass_kg=3"}));
+}
+
+TEST(StagesTest, ContradictionsAcrossLevelsAreRefused) {
+  EXPECT_EQ(Refusal("name: x\nmissions: 1\nsweep: {robot.mass_kg: [1, 2]}\n"
+                    "stages:\n  - {name: a, set: {robot.mass_kg: 1}}\n"),
+            "x.yaml:5:36: robot.mass_kg: '1' is not allowed here: the sweep varies it, at x.yaml:3:25");
+  EXPECT_EQ(Refusal("name: x\nmissions: 1\nsweep: {robot.mass_kg: [1, 2]}\n"
+                    "stages:\n  - {name: a, sweep: {robot.mass_kg: [1]}}\n"),
+            "x.yaml:5:39: robot.mass_kg: is on another axis, too, at x.yaml:3:25");
+}
+
+TEST(StagesTest, MissionsOverrideLeavesTrainingAlone) {
+  const SweepPlan plan = LoadText(kStudy, {.set = {}, .seed = {}, .missions = 3});
+  EXPECT_EQ(plan.stages[0].missions, 3);
+  EXPECT_EQ(plan.stages[1].missions, 0);
+  EXPECT_EQ(plan.stages[2].missions, 3);
+  EXPECT_EQ(plan.Missions(), 12);
+}
+
+TEST(StagesTest, LimitsCountAllStages) {
+  EXPECT_EQ(
+      Refusal("name: x\nmissions: 6000000\nstages:\n  - {name: a}\n  - {name: b}\n"),
+      "x.yaml:2:11: 12000000 missions in the stages up to 'b' are not allowed; allowed: at most 10000000 "
+      "in a sweep");
+  EXPECT_EQ(Refusal("name: x\nmissions: 1\nsweep: {robot.battery_mah: {range: [1000, 7000, 1]}}\n"
+                    "stages:\n  - {name: a}\n  - {name: b}\n"),
+            "x.yaml:3:9: 6001 combinations in stage 'b', after 6001 arms, are not allowed; allowed: at most "
+            "10000 arms in a sweep");
+}
+
+}  // namespace
+}  // namespace ed3r
