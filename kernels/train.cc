@@ -202,4 +202,25 @@ DenseNet DenseTrainer::net() const { return {state_->shape, state_->packed.data(
 
 std::uint64_t DenseTrainer::steps() const { return state_->steps; }
 
+void DenseTrainer::Save(float* parameters, float* m, float* v) const {
+  const State& s = *state_;
+  UnpackParameters(s.shape, s.packed.data(), parameters);
+  UnpackParameters(s.shape, s.m.data(), m);
+  UnpackParameters(s.shape, s.v.data(), v);
+}
+
+void DenseTrainer::Restore(const float* parameters, const float* m, const float* v, std::uint64_t steps) {
+  State& s = *state_;
+  PackParameters(s.shape, parameters, s.packed.data());
+  PackParameters(s.shape, m, s.m.data());
+  PackParameters(s.shape, v, s.v.data());
+  s.FillTransposed();
+  s.steps = steps;
+  s.beta1_power = s.beta2_power = 1.0;
+  for (std::uint64_t i = 0; i < steps; ++i) {  // the same products as step by step
+    s.beta1_power *= s.options.beta1;
+    s.beta2_power *= s.options.beta2;
+  }
+}
+
 }  // namespace ed3r

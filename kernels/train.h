@@ -65,6 +65,11 @@ class DenseTrainer {
   DenseNet net() const;                // a view of the present parameters, valid until the next Step
   std::uint64_t steps() const;         // done so far
 
+  // All that later steps depend on beside the options, to go on elsewhere with the same bits: parameters, m
+  // and v, flat with ParameterCount(shape) floats each, and steps().
+  void Save(float* parameters, float* m, float* v) const;
+  void Restore(const float* parameters, const float* m, const float* v, std::uint64_t steps);
+
  private:
   struct State;
   std::unique_ptr<State> state_;
