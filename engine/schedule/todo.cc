@@ -1,0 +1,59 @@
+#include "engine/schedule/todo.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "engine/core/check.h"
+#include "engine/core/random.h"
+
+namespace ed3r {
+namespace {
+
+bool ParseNumber(std::string_view text, std::int64_t& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace
+
+Shard ParseShard(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  std::int64_t index = 0, count = 0;
+  if (slash == std::string_view::npos || !ParseNumber(text.substr(0, slash), index) ||
+      !ParseNumber(text.substr(slash + 1), count) || count < 1 || index < 0 || index > count)
+    throw UserError(fmt::format("--shard: \"{}\" is not I/N with 0 <= I <= N and N >= 1, such as 1/4", text));
+  return {index % count, count};
+}
+
+bool InShard(std::int64_t linear_index, const Shard& shard) {
+  return linear_index % shard.count == shard.index;
+}
+
+std::vector<RunId> Todo(const RunLayout& layout, int stage, const Shard& shard,
+                        const std::vector<RunId>& stored) {
+  std::vector<RunId> todo;
+  const RunLayout::Stage& shape = layout.stages[stage];
+  for (int arm = 0; arm < static_cast<int>(shape.arms.size()); ++arm) {
+    for (int mission = 0; mission < shape.missions; ++mission) {
+      const RunId id{stage, arm, mission};
+      if (InShard(layout.LinearIndex(id), shard) && !std::binary_search(stored.begin(), stored.end(), id))
+        todo.push_back(id);
+    }
+  }
+  return todo;
+}
+
+std::vector<RunId> Arrange(std::vector<RunId> todo, Order order, std::uint64_t seed) {
+  if (order == Order::kReversed) std::reverse(todo.begin(), todo.end());
+  if (order == Order::kShuffled) {
+    Stream stream(seed, 0, Purpose::kScenario);
+    for (std::size_t left = todo.size(); left > 1; --left)  // Fisher-Yates
+      std::swap(todo[left - 1], todo[stream.Below(static_cast<std::uint32_t>(left))]);
+  }
+  return todo;
+}
+
+}  // namespace ed3r

@@ -1,0 +1,36 @@
+// Which missions a process flies, and in which order. Neither changes a result: a mission depends on its
+// number alone.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/store/layout.h"
+
+namespace ed3r {
+
+// Part `index` of `count` parts: the missions whose number, counted over the whole plan, leaves this
+// remainder. Neighbours go to different shards, so that each gets its share of every arm.
+struct Shard {
+  std::int64_t index = 0;
+  std::int64_t count = 1;
+};
+
+// "I/N" with 0 <= I <= N. Both ways of counting shards work, from 0 and from 1, because N/N is the same shard
+// as 0/N. UserError for anything else.
+Shard ParseShard(std::string_view text);
+
+bool InShard(std::int64_t linear_index, const Shard& shard);
+
+// Missions of one stage that belong to the shard and are not in `stored` (sorted), in plan order.
+std::vector<RunId> Todo(const RunLayout& layout, int stage, const Shard& shard,
+                        const std::vector<RunId>& stored);
+
+enum class Order { kNatural, kReversed, kShuffled };
+
+// For tests, which show that the order does not matter; a shuffle is a function of the seed.
+std::vector<RunId> Arrange(std::vector<RunId> todo, Order order, std::uint64_t seed = 0);
+
+}  // namespace ed3r

@@ -1,0 +1,112 @@
+// From a record's Describe() to SQL and back: the columns of a table, the insert, the read and the bytes of
+// the digest all walk that one description, so they cannot disagree. A column is INTEGER (int64) or REAL
+// (double).
+//
+// What SQLite cannot keep is settled here, once: NaN is NULL in the file and comes back as the quiet NaN, and
+// -0.0 comes back as 0.0. Everything else, infinities and denormals included, comes back bit for bit.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "engine/store/sqlite.h"
+
+namespace ed3r {
+
+// The value that comes back when `value` was stored.
+inline double Canonical(double value) {
+  if (std::isnan(value)) return std::numeric_limits<double>::quiet_NaN();
+  return value == 0.0 ? 0.0 : value;
+}
+
+struct Column {
+  std::string name;
+  bool is_real = false;
+};
+
+template <class Record>
+std::vector<Column> ColumnsOf() {
+  std::vector<Column> columns;
+  Record record;
+  Record::Describe(record, [&](std::string_view name, auto& field) {
+    using Field = std::remove_cvref_t<decltype(field)>;
+    static_assert(std::is_same_v<Field, std::int64_t> || std::is_same_v<Field, double>);
+    columns.push_back({std::string(name), std::is_same_v<Field, double>});
+  });
+  return columns;
+}
+
+// "k, command_dx_m, ..."
+template <class Record>
+std::string ColumnNames() {
+  std::string names;
+  for (const Column& column : ColumnsOf<Record>()) names += (names.empty() ? "" : ", ") + column.name;
+  return names;
+}
+
+// "k INTEGER NOT NULL, command_dx_m REAL, ...": only a REAL may be NULL, and then it is NaN.
+template <class Record>
+std::string ColumnDefinitions() {
+  std::string definitions;
+  for (const Column& column : ColumnsOf<Record>())
+    definitions +=
+        (definitions.empty() ? "" : ", ") + column.name + (column.is_real ? " REAL" : " INTEGER NOT NULL");
+  return definitions;
+}
+
+// "?, ?, ..." for `keys` key columns and then every column of the record.
+template <class Record>
+std::string Placeholders(int keys) {
+  std::string marks = "?";
+  for (std::size_t i = 1; i < keys + ColumnsOf<Record>().size(); ++i) marks += ", ?";
+  return marks;
+}
+
+// Binds every column of the record, from parameter `next` on.
+template <class Record>
+void BindColumns(Statement& statement, int next, const Record& record) {
+  Record::Describe(record, [&](std::string_view, const auto& field) { statement.Bind(next++, field); });
+}
+
+// Reads every column of the record, from column `next` on.
+template <class Record>
+void ReadColumns(const Statement& statement, int next, Record& record) {
+  Record::Describe(record, [&](std::string_view, auto& field) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, double>)
+      field = statement.Real(next++);
+    else
+      field = statement.Int(next++);
+  });
+}
+
+// Appends eight bytes, least significant first, whatever the machine's order.
+inline void AppendInt(std::string& bytes, std::int64_t value) {
+  const auto bits = static_cast<std::uint64_t>(value);
+  char little[8];
+  for (int i = 0; i < 8; ++i) little[i] = static_cast<char>(bits >> (8 * i));
+  bytes.append(little, sizeof little);
+}
+
+inline void AppendText(std::string& bytes, std::string_view text) {
+  AppendInt(bytes, static_cast<std::int64_t>(text.size()));
+  bytes.append(text);
+}
+
+// Appends every column in its canonical form, which is the same before storing and after reading back.
+template <class Record>
+void AppendColumns(std::string& bytes, const Record& record) {
+  Record::Describe(record, [&](std::string_view, const auto& field) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, double>)
+      AppendInt(bytes, std::bit_cast<std::int64_t>(Canonical(field)));
+    else
+      AppendInt(bytes, field);
+  });
+}
+
+}  // namespace ed3r

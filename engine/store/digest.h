@@ -1,0 +1,26 @@
+// Fingerprints of results. They depend on what was flown and on nothing else: not on threads, order, shards,
+// interruptions, times, machine, or the way in which SQLite laid it out.
+#pragma once
+
+#include <string>
+
+#include "engine/mission/record.h"
+
+namespace ed3r {
+
+class ResultReader;
+
+// The bytes of one record with its timesteps that enter a digest: each column by Describe(), eight bytes,
+// least significant first. Two records are identical when these are. The same before storing and after
+// reading back.
+std::string CanonicalBytes(const MissionRecord& record);
+
+// SHA-256 of CanonicalBytes in hexadecimal.
+std::string DigestOf(const MissionRecord& record);
+
+// SHA-256 of everything stored: the column names; then for each finished mission, by stage, arm and mission,
+// the names of stage and arm, its number, its columns, and its timesteps by k. Failures, sessions and timings
+// are not part of it. Texts carry their length.
+std::string DigestOf(ResultReader& reader);
+
+}  // namespace ed3r

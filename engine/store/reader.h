@@ -1,0 +1,87 @@
+// Reading results: for studies, status, digest and merge. Everything comes in canonical order: by stage, arm,
+// mission, then k. A reader may be open while another process writes: each call sees one moment of the file.
+//
+// Threads: one reader is used by one thread at a time; open one per thread.
+// Errors: UserError when there is no store, or a damaged one.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/mission/record.h"
+#include "engine/store/layout.h"
+#include "engine/store/recipe.h"
+#include "engine/store/sqlite.h"
+
+namespace ed3r {
+
+struct StoredMission {
+  RunId id;
+  MissionRecord record;
+  std::int64_t session = 0;  // who flew it
+  double wall_s = 0;         // and how long that took
+};
+
+struct FailedMission {
+  RunId id;
+  std::int64_t scenario = 0;
+  std::uint64_t seed = 0;
+  std::string message;
+};
+
+struct Session {
+  std::int64_t id = 0;
+  std::string host;
+  std::int64_t process = 0;
+  std::string begun_utc;
+  std::string ended_utc;  // "" while it runs, or when it was killed
+  std::map<std::string, std::string> notes;
+};
+
+// One arm of one stage. missing = planned - done - failed.
+struct ArmStatus {
+  std::string stage, arm;
+  std::int64_t planned = 0, done = 0, failed = 0, missing = 0;
+  double simulated_s = 0, wall_s = 0;  // of the missions done; wall time summed over threads
+};
+
+enum class Steps { kSkip, kLoad };
+
+class ResultReader {
+ public:
+  explicit ResultReader(const std::string& dir);
+
+  const std::string& dir() const { return dir_; }
+  const RunLayout& Layout() const { return layout_; }
+  const Recipe& StoredRecipe() const { return recipe_; }  // without notes: see Sessions()
+
+  std::vector<RunId> Stored();
+  std::vector<ArmStatus> Status();
+  std::vector<FailedMission> Failures();
+  std::vector<Session> Sessions();  // in order of their begin
+
+  // With Steps::kSkip the records come without their timesteps. `visit` must not call this reader.
+  using MissionVisitor = std::function<void(const StoredMission&)>;
+  void ForEachMission(Steps steps, const MissionVisitor& visit);
+  void ForEachMission(int stage, int arm, Steps steps, const MissionVisitor& visit);
+
+  // Every timestep of one arm, for training and pooled figures.
+  void ForEachTimestep(int stage, int arm,
+                       const std::function<void(int mission, const TimestepRecord&)>& visit);
+
+  // With timesteps. UserError when it is not in the plan, or not stored (yet, or because it failed).
+  StoredMission LoadMission(const RunId& id);
+
+ private:
+  void Visit(const std::string& where, Steps steps, const MissionVisitor& visit);
+
+  std::string dir_;
+  Connection database_;
+  RunLayout layout_;
+  Recipe recipe_;
+};
+
+}  // namespace ed3r

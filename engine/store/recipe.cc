@@ -1,0 +1,51 @@
+#include "engine/store/recipe.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace ed3r {
+namespace {
+
+// Takes the first line off `text`.
+std::string_view TakeLine(std::string_view& text) {
+  const std::string_view line = text.substr(0, text.find('\n'));
+  text.remove_prefix(std::min(text.size(), line.size() + 1));
+  return line;
+}
+
+std::string Quoted(std::string_view line) {
+  constexpr std::size_t kLongest = 120;
+  return line.size() <= kLongest ? fmt::format("\"{}\"", line)
+                                 : fmt::format("\"{}...\"", line.substr(0, kLongest));
+}
+
+std::string PlanDifference(std::string_view there, std::string_view here) {
+  for (int number = 1;; ++number) {
+    const bool there_ends = there.empty(), here_ends = here.empty();
+    const std::string_view a = TakeLine(there), b = TakeLine(here);
+    if (a == b && !there_ends && !here_ends) continue;
+    return fmt::format("the plan differs at its line {}: {} there, {} here", number,
+                       there_ends ? "nothing more" : Quoted(a), here_ends ? "nothing more" : Quoted(b));
+  }
+}
+
+}  // namespace
+
+std::optional<std::string> Difference(const Recipe& there, const Recipe& here) {
+  if (there.plan_text != here.plan_text) return PlanDifference(there.plan_text, here.plan_text);
+  if (there.code_version != here.code_version)
+    return fmt::format("the code is {} there and {} here", there.code_version, here.code_version);
+  for (const auto& [world, fingerprint] : there.worlds) {
+    const auto other = here.worlds.find(world);
+    if (other == here.worlds.end()) return fmt::format("the world {} is used there, but not here", world);
+    if (other->second != fingerprint)
+      return fmt::format("the world {} is {} there and {} here", world, fingerprint, other->second);
+  }
+  for (const auto& [world, fingerprint] : here.worlds)
+    if (!there.worlds.contains(world)) return fmt::format("the world {} is used here, but not there", world);
+  return std::nullopt;
+}
+
+}  // namespace ed3r

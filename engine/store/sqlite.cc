@@ -1,0 +1,162 @@
+#include "engine/store/sqlite.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <filesystem>
+#include <limits>
+
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+constexpr int kBusyTimeout_ms = 10000;
+
+int OpenFlags(Connection::Access access) {
+  switch (access) {
+    case Connection::Access::kReadOnly:
+      return SQLITE_OPEN_READONLY;
+    case Connection::Access::kReadWrite:
+      return SQLITE_OPEN_READWRITE;
+    case Connection::Access::kCreate:
+      return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void Connection::Close::operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+
+Connection::Connection(const std::string& file, Access access) : file_(file) {
+  sqlite3* database = nullptr;
+  // An absolute path, because Debian's SQLite takes a name that begins with "file:" for a URI.
+  const std::string path = std::filesystem::absolute(file).string();
+  const int status =
+      sqlite3_open_v2(path.c_str(), &database, OpenFlags(access) | SQLITE_OPEN_NOMUTEX, nullptr);
+  database_.reset(database);
+  if (!database) throw StoreError(fmt::format("{}: out of memory", file));
+  if (status != SQLITE_OK) Fail();
+  SetBusyTimeout(kBusyTimeout_ms);
+}
+
+void Connection::Execute(const std::string& sql) {
+  if (sqlite3_exec(database_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) Fail();
+}
+
+std::int64_t Connection::Int(const std::string& sql) {
+  Statement statement(*this, sql);
+  ED3R_CHECK(statement.Step(), sql);
+  return statement.Int(0);
+}
+
+std::string Connection::Text(const std::string& sql) {
+  Statement statement(*this, sql);
+  ED3R_CHECK(statement.Step(), sql);
+  return statement.Text(0);
+}
+
+void Connection::SetBusyTimeout(int milliseconds) { sqlite3_busy_timeout(database_.get(), milliseconds); }
+
+bool Connection::InTransaction() const { return sqlite3_get_autocommit(database_.get()) == 0; }
+
+void Connection::Fail() const {
+  const std::string reason = sqlite3_errmsg(database_.get());
+  switch (sqlite3_errcode(database_.get()) & 0xff) {  // the low byte is the kind, the rest details
+    case SQLITE_NOTADB:
+      throw UserError(fmt::format("{}: not a results file ({})", file_, reason));
+    case SQLITE_CORRUPT:
+      throw UserError(fmt::format("{}: the file is damaged ({})", file_, reason));
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      throw UserError(fmt::format("{}: in use by another process ({}); try again later", file_, reason));
+    case SQLITE_CANTOPEN:
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+    case SQLITE_AUTH:
+      throw UserError(fmt::format("{}: cannot be opened for this ({})", file_, reason));
+    case SQLITE_IOERR:  // the extended code tells reading from writing and syncing
+      throw StoreError(
+          fmt::format("{}: {} (SQLite code {})", file_, reason, sqlite3_extended_errcode(database_.get())));
+    case SQLITE_FULL:
+    case SQLITE_NOMEM:
+    case SQLITE_TOOBIG:
+    case SQLITE_PROTOCOL:
+    case SQLITE_NOLFS:
+      throw StoreError(fmt::format("{}: {}", file_, reason));
+    default:
+      throw InternalError(fmt::format("{}: SQLite: {}", file_, reason));
+  }
+}
+
+Statement::Statement(Connection& connection, std::string_view sql) : connection_(connection) {
+  sqlite3_stmt* statement = nullptr;
+  const int status = sqlite3_prepare_v3(connection.database_.get(), sql.data(), static_cast<int>(sql.size()),
+                                        SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
+  statement_.reset(statement);
+  if (status != SQLITE_OK) connection.Fail();
+}
+
+void Statement::Bind(int parameter, std::int64_t value) {
+  if (sqlite3_bind_int64(statement_.get(), parameter + 1, value) != SQLITE_OK) connection_.Fail();
+}
+
+void Statement::Bind(int parameter, double value) {
+  if (sqlite3_bind_double(statement_.get(), parameter + 1, value) != SQLITE_OK) connection_.Fail();
+}
+
+void Statement::Bind(int parameter, std::string_view value) {
+  if (sqlite3_bind_text64(statement_.get(), parameter + 1, value.data(), value.size(), SQLITE_TRANSIENT,
+                          SQLITE_UTF8) != SQLITE_OK)
+    connection_.Fail();
+}
+
+bool Statement::Step() {
+  const int status = sqlite3_step(statement_.get());
+  if (status == SQLITE_ROW) return true;
+  if (status == SQLITE_DONE) return false;
+  connection_.Fail();
+}
+
+void Statement::Reset() { sqlite3_reset(statement_.get()); }
+
+void Statement::Run() {
+  while (Step()) {
+  }
+  Reset();
+}
+
+std::int64_t Statement::Int(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+
+double Statement::Real(int column) const {
+  return IsNull(column) ? std::numeric_limits<double>::quiet_NaN()
+                        : sqlite3_column_double(statement_.get(), column);
+}
+
+std::string Statement::Text(int column) const {
+  const unsigned char* text = sqlite3_column_text(statement_.get(), column);
+  const int bytes = sqlite3_column_bytes(statement_.get(), column);
+  return text ? std::string(reinterpret_cast<const char*>(text), static_cast<std::size_t>(bytes)) : "";
+}
+
+bool Statement::IsNull(int column) const {
+  return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
+}
+
+Transaction::Transaction(Connection& connection, Kind kind) : connection_(connection) {
+  connection_.Execute(kind == Kind::kWrite ? "BEGIN IMMEDIATE" : "BEGIN");
+}
+
+Transaction::~Transaction() {
+  // SQLite rolls back by itself after some errors; then there is nothing left to do.
+  try {
+    if (connection_.InTransaction()) connection_.Execute("ROLLBACK");
+  } catch (...) {  // the connection is closed next, which rolls back as well
+  }
+}
+
+void Transaction::Commit() { connection_.Execute("COMMIT"); }
+
+}  // namespace ed3r

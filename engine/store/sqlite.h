@@ -1,0 +1,98 @@
+// The little of SQLite's C API that the store needs, with RAII and the engine's errors:
+//   UserError      the file cannot be used as asked: not a database, damaged, locked, no permission
+//   StoreError     the machine failed: disk full, input/output error, out of memory
+//   InternalError  wrong SQL or a broken constraint: a defect of the engine
+// Each is one line that begins with the file. Threads: a connection and its statements serve one thread at
+// a time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace ed3r {
+
+// The disk or the machine failed, not the input.
+class StoreError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Connection {
+ public:
+  enum class Access { kReadOnly, kReadWrite, kCreate };
+  Connection(const std::string& file, Access access);
+
+  void Execute(const std::string& sql);      // one or more statements without results
+  std::int64_t Int(const std::string& sql);  // the first column of the first row
+  std::string Text(const std::string& sql);  // likewise
+  void SetBusyTimeout(int milliseconds);     // how long to wait for other processes
+  bool InTransaction() const;
+  const std::string& file() const { return file_; }
+
+  // Throws the error of the last call on this connection.
+  [[noreturn]] void Fail() const;
+
+ private:
+  friend class Statement;
+  struct Close {
+    void operator()(sqlite3* database) const;
+  };
+  std::string file_;
+  std::unique_ptr<sqlite3, Close> database_;
+};
+
+// A compiled statement. Parameters and columns are numbered from 0.
+class Statement {
+ public:
+  Statement(Connection& connection, std::string_view sql);
+
+  void Bind(int parameter, std::int64_t value);
+  void Bind(int parameter, double value);  // NaN becomes NULL
+  void Bind(int parameter, std::string_view value);
+
+  bool Step();   // true: a row is there; false: the end
+  void Reset();  // ready for the next Bind and Step; keeps the bindings
+  void Run();    // Step to the end, then Reset
+
+  // Binds the values in order from parameter 0, then runs.
+  template <class... Values>
+  void Run(const Values&... values) {
+    int parameter = 0;
+    (Bind(parameter++, values), ...);
+    Run();
+  }
+
+  std::int64_t Int(int column) const;
+  double Real(int column) const;  // NULL becomes NaN
+  std::string Text(int column) const;
+  bool IsNull(int column) const;
+
+ private:
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  Connection& connection_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+};
+
+// Commits when told so, else rolls back. A read transaction sees one moment of the file.
+class Transaction {
+ public:
+  enum class Kind { kRead, kWrite };
+  Transaction(Connection& connection, Kind kind);
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  void Commit();
+
+ private:
+  Connection& connection_;
+};
+
+}  // namespace ed3r

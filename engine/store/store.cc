@@ -1,0 +1,115 @@
+#include "engine/store/store.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <ctime>
+#include <optional>
+
+#include "engine/core/check.h"
+#include "engine/store/records.h"
+#include "engine/store/schema.h"
+#include "engine/store/sqlite.h"
+#include "engine/store/store_file.h"
+
+namespace ed3r {
+namespace {
+
+std::string UtcNow() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm parts = {};
+  gmtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+std::string HostName() {
+  char name[256] = {};
+  return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
+}
+
+class SqliteStore final : public ResultStore {
+ public:
+  SqliteStore(const std::string& dir, const Recipe& recipe, const RunLayout& layout)
+      : layout_(layout), file_(dir, recipe, layout), writer_(file_.database()) {
+    BeginSession(recipe);
+  }
+
+  ~SqliteStore() override {
+    try {
+      group_.reset();
+      Statement end(file_.database(), "UPDATE sessions SET ended_utc = ? WHERE session = ?");
+      end.Run(UtcNow(), session_);
+    } catch (const std::exception&) {  // a full disk: the session stays without an end, as after a kill
+    }
+  }
+
+  const RunLayout& Layout() const override { return layout_; }
+
+  std::vector<RunId> Stored() const override { return ReadStored(file_.database()); }
+
+  void Put(const RunId& id, const MissionRecord& record, double wall_s) override {
+    CheckStorable(record);
+    const std::int64_t run = layout_.RunIndex(id);
+    InGroup([&] {
+      writer_.InsertMission(run, id.mission, record);
+      writer_.InsertTiming(run, id.mission, session_, wall_s);
+    });
+  }
+
+  void PutFailure(const RunId& id, const std::string& message) override {
+    const std::int64_t run = layout_.RunIndex(id);
+    InGroup([&] { writer_.InsertFailure(run, id.mission, layout_.Scenario(id), layout_.seed, message); });
+  }
+
+  void Commit() override {
+    InGroup([&] { group_->Commit(); });
+    group_.reset();
+  }
+
+ private:
+  void BeginSession(const Recipe& recipe) {
+    Connection& database = file_.database();
+    Transaction transaction(database, Transaction::Kind::kWrite);
+    // Drawn, not counted: sessions of many stores meet in a merge.
+    session_ = database.Int("SELECT random() & 0x7fffffffffffffff");
+    Statement begin(database, "INSERT INTO sessions VALUES (?, ?, ?, ?, NULL)");
+    begin.Run(session_, HostName(), static_cast<std::int64_t>(getpid()), UtcNow());
+    Statement note(database, "INSERT INTO session_notes VALUES (?, ?, ?)");
+    for (const auto& [key, value] : recipe.notes) note.Run(session_, key, value);
+    transaction.Commit();
+  }
+
+  // Runs `write` inside the open group. A write that fails may have got half-way, so the whole group goes
+  // and the store is closed to further writes: no later commit can keep half a mission.
+  template <class Write>
+  void InGroup(const Write& write) {
+    ED3R_CHECK(!broken_, "a write to this store failed before");
+    try {
+      if (!group_) group_.emplace(file_.database(), Transaction::Kind::kWrite);
+      write();
+    } catch (...) {
+      broken_ = true;
+      group_.reset();
+      throw;
+    }
+  }
+
+  RunLayout layout_;
+  mutable StoreFile file_;  // reading moves SQLite's cursors
+  RecordWriter writer_;
+  std::optional<Transaction> group_;  // since the last commit
+  std::int64_t session_ = 0;
+  bool broken_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<ResultStore> ResultStore::Open(const std::string& dir, const Recipe& recipe,
+                                               const RunLayout& layout) {
+  return std::make_unique<SqliteStore>(dir, recipe, layout);
+}
+
+}  // namespace ed3r

@@ -1,0 +1,101 @@
+// How fast and how large the store is, on as many rows as the paper's whole study: prints one line per
+// measure.
+//   build/bench/engine/store/store_bench [MISSIONS [TIMESTEPS]]
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <type_traits>
+
+#include "engine/core/random.h"
+#include "engine/store/digest.h"
+#include "engine/store/reader.h"
+#include "engine/store/schema.h"
+#include "engine/store/store.h"
+
+namespace ed3r {
+namespace {
+
+// Fractions without structure, as measured figures are; a fifth of the columns is zero at each timestep (a
+// move is up or down, a picture is sent or computed on).
+template <class Record>
+void Fill(Stream& stream, Record& record) {
+  Record::Describe(record, [&](std::string_view, auto& field) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, double>)
+      field = stream.Below(5) == 0 ? 0.0 : stream.Uniform(0, 1000);
+    else
+      field = stream.Below(6);
+  });
+}
+
+MissionRecord Draw(std::uint32_t mission, int timesteps) {
+  Stream stream(1, mission, Purpose::kScenario);
+  MissionRecord record;
+  Fill(stream, record);
+  for (int k = 1; k <= timesteps; ++k) {
+    Fill(stream, record.steps.emplace_back());
+    record.steps.back().k = k;
+  }
+  return record;
+}
+
+class Stopwatch {
+ public:
+  double Seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+void Write(const std::string& dir, const RunLayout& layout, int missions, int timesteps) {
+  std::vector<MissionRecord> records;
+  for (int i = 0; i < missions; ++i) records.push_back(Draw(static_cast<std::uint32_t>(i), timesteps));
+  const double rows = 1.0 * missions * timesteps;
+  const Stopwatch all;
+  auto store = ResultStore::Open(dir, {}, layout);
+  const Stopwatch puts;
+  for (int i = 0; i < missions; ++i) {
+    store->Put({0, 0, i}, records[static_cast<std::size_t>(i)], 1.0);
+    if (i % 400 == 399) store->Commit();
+  }
+  store->Commit();
+  fmt::print("put and commit     {:8.0f} rows/s\n", rows / puts.Seconds());
+  store.reset();
+  fmt::print("open to close      {:8.0f} rows/s\n", rows / all.Seconds());
+  const auto bytes = std::filesystem::file_size(std::filesystem::path(dir) / kResultsFile);
+  fmt::print("file               {:8.1f} MB, {:.0f} bytes/row\n", static_cast<double>(bytes) / 1e6,
+             static_cast<double>(bytes) / rows);
+}
+
+void Read(const std::string& dir, double rows) {
+  ResultReader reader(dir);
+  const Stopwatch steps;
+  double sum = 0;
+  reader.ForEachTimestep(0, 0, [&](int, const TimestepRecord& step) { sum += step.total_j; });
+  fmt::print("timesteps read     {:8.0f} rows/s (sum {:.6g})\n", rows / steps.Seconds(), sum);
+  const Stopwatch digest;
+  const std::string text = DigestOf(reader);
+  fmt::print("digest             {:8.0f} rows/s ({:.2f} s, {:.8})\n", rows / digest.Seconds(),
+             digest.Seconds(), text);
+  const Stopwatch status;
+  const auto done = reader.Status().front().done;
+  fmt::print("status             {:8.1f} ms ({} done)\n", 1e3 * status.Seconds(), done);
+}
+
+}  // namespace
+}  // namespace ed3r
+
+int main(int argc, char** argv) {
+  const int missions = argc > 1 ? std::atoi(argv[1]) : 11000;
+  const int timesteps = argc > 2 ? std::atoi(argv[2]) : 30;
+  const auto dir = std::filesystem::temp_directory_path() / fmt::format("ed3r_store_bench_{}", missions);
+  std::filesystem::remove_all(dir);
+  const ed3r::RunLayout layout{
+      .name = "bench", .seed = 1, .stages = {{.name = "s", .missions = missions, .arms = {{"a", 0}}}}};
+  ed3r::Write(dir.string(), layout, missions, timesteps);
+  ed3r::Read(dir.string(), 1.0 * missions * timesteps);
+  std::filesystem::remove_all(dir);
+}

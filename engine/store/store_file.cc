@@ -1,0 +1,100 @@
+#include "engine/store/store_file.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "engine/core/check.h"
+#include "engine/store/reader.h"
+#include "engine/store/schema.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Rows of 300-400 bytes: 16 KiB hold about forty, and the tree stays three levels deep.
+constexpr int kPageBytes = 16384;
+constexpr int kCacheKib = 64 * 1024;
+
+std::string FileIn(const std::string& dir) { return (fs::path(dir) / kResultsFile).string(); }
+
+bool MakeDirectory(const std::string& dir) {
+  std::error_code error;
+  const bool created = fs::create_directories(dir, error);
+  if (error) throw UserError(fmt::format("{}: {}", dir, error.message()));
+  return created;
+}
+
+// " (process 4711 on node3 since 2026-01-01T12:00:00Z)", as far as the file tells.
+std::string Holder(const std::string& dir) {
+  try {
+    const std::vector<Session> sessions = ResultReader(dir).Sessions();
+    if (!sessions.empty() && sessions.back().ended_utc.empty())
+      return fmt::format(" (process {} on {} since {})", sessions.back().process, sessions.back().host,
+                         sessions.back().begun_utc);
+  } catch (const std::exception&) {  // the other process may be just about to create it
+  }
+  return "";
+}
+
+DirectoryLock Lock(const std::string& dir) {
+  if (auto lock = DirectoryLock::TryLock(dir)) return std::move(*lock);
+  throw UserError(fmt::format("{}: another ed3r is writing into this directory{}", dir, Holder(dir)));
+}
+
+void CheckSameRun(Connection& database, const std::string& dir, const Recipe& recipe,
+                  const RunLayout& layout) {
+  if (const auto difference = Difference(ReadRecipe(database), recipe))
+    throw UserError(
+        fmt::format("{}: holds results of another recipe: {}; give another --out", dir, *difference));
+  if (!ReadLayout(database).SameMissions(layout))
+    throw UserError(fmt::format("{}: holds results of other stages, arms or seed; give another --out", dir));
+}
+
+}  // namespace
+
+StoreFile::StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout) : dir_(dir) {
+  created_dir_ = MakeDirectory(dir);
+  lock_ = std::make_unique<DirectoryLock>(Lock(dir));
+  created_ = !fs::exists(FileIn(dir));
+  database_ = std::make_unique<Connection>(FileIn(dir), Connection::Access::kCreate);
+  OpenOrCreate(recipe, layout);
+}
+
+void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout) {
+  const bool empty = CheckFile(*database_) == FileKind::kEmpty;
+  if (!empty) CheckSameRun(*database_, dir_, recipe, layout);
+  // Only now: a refused file stays as it was.
+  if (empty) database_->Execute(fmt::format("PRAGMA page_size = {}", kPageBytes));
+  database_->Execute("PRAGMA journal_mode = WAL");
+  // A commit outlives the process at once, and a power cut costs the last commits but never the file.
+  database_->Execute("PRAGMA synchronous = NORMAL");
+  database_->Execute(fmt::format("PRAGMA cache_size = -{}", kCacheKib));
+  database_->Execute("PRAGMA secure_delete = OFF");  // Debian's default wipes freed space
+  if (!empty) return;
+  Transaction transaction(*database_, Transaction::Kind::kWrite);
+  CreateTables(*database_, recipe, layout);
+  transaction.Commit();
+}
+
+StoreFile::~StoreFile() {
+  if (!database_) return;
+  try {
+    database_->SetBusyTimeout(0);  // a reader that is still looking is not waited for
+    database_->Execute("PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode = DELETE");
+  } catch (const std::exception&) {  // stays in WAL mode, which is as safe
+  }
+}
+
+void StoreFile::Discard() {
+  database_.reset();
+  if (!created_) return;
+  std::error_code ignored;
+  for (const char* suffix : {"", "-wal", "-shm"}) fs::remove(FileIn(dir_) + suffix, ignored);
+  if (created_dir_) fs::remove(dir_, ignored);
+}
+
+}  // namespace ed3r

@@ -1,0 +1,101 @@
+// Files that are not what they should be: one line, no harm done.
+#include <sqlite3.h>
+
+#include <fstream>
+#include <functional>
+
+#include "tests/store/store_fixture.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+void Sql(const std::string& file, const std::string& sql) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+      << sqlite3_errmsg(database);
+  sqlite3_close(database);
+}
+
+// Reader and writer must both refuse with `part` in the message.
+void ExpectRefused(const std::string& dir, const std::string& part) {
+  const auto size = fs::file_size(ResultsIn(dir));
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader reader(dir); }), part));
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultStore::Open(dir, TestRecipe(), TestLayout()); }), part));
+  EXPECT_EQ(fs::file_size(ResultsIn(dir)), size);
+}
+
+TEST(DamageTest, NothingThere) {
+  const TempDir temp;
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader reader(temp / "none"); }), "no such directory"));
+  fs::create_directories(temp / "empty");
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader reader(temp / "empty"); }),
+                       "no results in it (results.sqlite is missing)"));
+}
+
+TEST(DamageTest, ADirectoryThatCannotBeMade) {
+  const TempDir temp;
+  std::ofstream(temp / "file") << "text";
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultStore::Open(temp / "file/run", TestRecipe(), TestLayout()); }),
+                       temp / "file"));
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultStore::Open(temp / "file", TestRecipe(), TestLayout()); }),
+                       temp / "file"));
+}
+
+TEST(DamageTest, NotADatabase) {
+  const TempDir temp;
+  fs::create_directories(temp / "run");
+  std::ofstream(ResultsIn(temp / "run")) << std::string(5000, 'x');
+  ExpectRefused(temp / "run", "not a results file (file is not a database)");
+}
+
+TEST(DamageTest, SomebodyElsesDatabase) {
+  const TempDir temp;
+  fs::create_directories(temp / "run");
+  Sql(ResultsIn(temp / "run"), "CREATE TABLE missions (a); INSERT INTO missions VALUES (1)");
+  ExpectRefused(temp / "run", "an SQLite file, but not one of ed3r");
+}
+
+TEST(DamageTest, ANewerOrOlderSchema) {
+  const TempDir temp;
+  WriteStore(temp / "run", {{0, 0, 0}});
+  Sql(ResultsIn(temp / "run"), fmt::format("PRAGMA user_version = {}", kSchemaVersion + 1));
+  ExpectRefused(temp / "run", "written by a newer ed3r");
+  Sql(ResultsIn(temp / "run"), "PRAGMA user_version = 0");
+  ExpectRefused(temp / "run", "written by an older ed3r");
+}
+
+TEST(DamageTest, OtherColumns) {
+  const TempDir temp;
+  WriteStore(temp / "run", {{0, 0, 0}});
+  Sql(ResultsIn(temp / "run"), "ALTER TABLE timesteps RENAME COLUMN scs TO score");
+  ExpectRefused(temp / "run", "written by another version of ed3r (code 0123abcd)");
+}
+
+TEST(DamageTest, ATruncatedFile) {
+  const TempDir temp;
+  WriteStore(temp / "run", AllMissions(TestLayout()));
+  fs::resize_file(ResultsIn(temp / "run"), fs::file_size(ResultsIn(temp / "run")) / 2);
+  ExpectRefused(temp / "run", "damaged");
+}
+
+TEST(DamageTest, OverwrittenPagesAreFoundWhenTheyAreRead) {
+  const TempDir temp;
+  WriteStore(temp / "run", AllMissions(TestLayout()));
+  {
+    std::fstream file(ResultsIn(temp / "run"), std::ios::in | std::ios::out | std::ios::binary);
+    const auto size = static_cast<std::streamoff>(fs::file_size(ResultsIn(temp / "run")));
+    file.seekp(size / 2);
+    file << std::string(static_cast<std::size_t>(size - size / 2), '\xff');
+  }
+  const std::string error = UserErrorOf([&] {
+    ResultReader reader(temp / "run");
+    DigestOf(reader);
+  });
+  EXPECT_TRUE(Contains(error, ResultsIn(temp / "run") + ": the file is damaged"));
+}
+
+}  // namespace
+}  // namespace ed3r

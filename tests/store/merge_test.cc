@@ -1,0 +1,143 @@
+#include "engine/store/merge.h"
+
+#include "tests/store/store_fixture.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<RunId> Every(int step, int first) {
+  std::vector<RunId> some;
+  const std::vector<RunId> all = AllMissions(TestLayout());
+  for (std::size_t i = first; i < all.size(); i += step) some.push_back(all[i]);
+  return some;
+}
+
+class MergeTest : public ::testing::Test {
+ protected:
+  MergeTest() {
+    for (int shard = 0; shard < 3; ++shard) WriteStore(Shard(shard), Every(3, shard));
+    WriteStore(temp_ / "whole", AllMissions(TestLayout()));
+  }
+  std::string Shard(int i) const { return temp_ / fmt::format("shard{}", i); }
+  std::vector<std::string> Shards() const { return {Shard(0), Shard(1), Shard(2)}; }
+
+  TempDir temp_;
+};
+
+TEST_F(MergeTest, ShardsMakeTheWhole) {
+  const MergeSummary summary = MergeStores(temp_ / "out", Shards());
+  EXPECT_EQ(summary.added, 100);
+  EXPECT_EQ(summary.present, 0);
+  EXPECT_EQ(DigestOfDir(temp_ / "out"), DigestOfDir(temp_ / "whole"));
+  ResultReader out(temp_ / "out");
+  EXPECT_EQ(out.Sessions().size(), 3u);
+  EXPECT_EQ(out.Status()[0].wall_s, 40 * 0.25);
+  EXPECT_EQ(out.Sessions()[0].notes.at("simd"), "avx2");
+}
+
+TEST_F(MergeTest, AgainAndOverlapping) {
+  MergeStores(temp_ / "out", {Shard(0), Shard(1)});
+  const MergeSummary again = MergeStores(temp_ / "out", {Shard(1), Shard(2), temp_ / "whole", Shard(2)});
+  EXPECT_EQ(again.added, 33);
+  EXPECT_EQ(again.present, 33 + 100 + 33);
+  const std::string digest = DigestOfDir(temp_ / "out");
+  EXPECT_EQ(digest, DigestOfDir(temp_ / "whole"));
+  const std::size_t sessions = ResultReader(temp_ / "out").Sessions().size();
+  const MergeSummary nothing = MergeStores(temp_ / "out", {Shard(1), Shard(2), temp_ / "whole", Shard(2)});
+  EXPECT_EQ(nothing.added, 0);
+  EXPECT_EQ(DigestOfDir(temp_ / "out"), digest);
+  EXPECT_EQ(ResultReader(temp_ / "out").Sessions().size(), sessions);
+}
+
+TEST_F(MergeTest, IntoOneOfThem) {
+  const MergeSummary summary = MergeStores(Shard(0), Shards());
+  EXPECT_EQ(summary.added, 66);
+  EXPECT_EQ(summary.present, 0);
+  EXPECT_EQ(DigestOfDir(Shard(0)), DigestOfDir(temp_ / "whole"));
+  EXPECT_FALSE(fs::exists(ResultsIn(Shard(0)) + "-wal"));
+  EXPECT_EQ(MergeStores(Shard(0), {Shard(0)}).added, 0);
+}
+
+// Stores mission {2, 0, 7} with one column off by one unit in the last place.
+void WriteConflict(const std::string& dir, bool in_step) {
+  const RunId id{2, 0, 7};
+  MissionRecord record = TestRecord(id);
+  ASSERT_GT(record.steps.size(), 0u);
+  double& value = in_step ? record.steps.back().scs : record.total_j;
+  value = std::nextafter(value, 1e9);
+  const auto store = ResultStore::Open(dir, TestRecipe(), TestLayout());
+  store->Put({0, 0, 0}, TestRecord({0, 0, 0}), 0);
+  store->Put(id, record, 0);
+  store->Commit();
+}
+
+TEST_F(MergeTest, AConflictIsRefusedAndNothingChanges) {
+  for (const bool in_step : {false, true}) {
+    const std::string odd = temp_ / fmt::format("odd{}", in_step);
+    WriteConflict(odd, in_step);
+    MergeStores(temp_ / "out", {Shard(0)});
+    const std::string digest = DigestOfDir(temp_ / "out");
+    std::string error = UserErrorOf([&] { MergeStores(temp_ / "out", {odd, Shard(1), Shard(2)}); });
+    EXPECT_TRUE(Contains(error, "stage online, arm rbs, mission 7"));
+    EXPECT_EQ(DigestOfDir(temp_ / "out"), digest);
+    // A new directory disappears again.
+    error = UserErrorOf([&] { MergeStores(temp_ / "new", {temp_ / "whole", odd}); });
+    EXPECT_TRUE(Contains(error, odd));
+    EXPECT_FALSE(fs::exists(temp_ / "new"));
+  }
+}
+
+TEST_F(MergeTest, AnotherRecipeIsRefused) {
+  const auto refused = [&](const std::string& name, const Recipe& recipe, const std::string& part) {
+    WriteStore(temp_ / name, {{0, 0, 0}}, recipe);
+    EXPECT_TRUE(Contains(UserErrorOf([&] { MergeStores(temp_ / "new", {Shard(0), temp_ / name}); }), part));
+    EXPECT_FALSE(fs::exists(temp_ / "new"));
+    const std::string digest = DigestOfDir(temp_ / name);
+    EXPECT_TRUE(Contains(UserErrorOf([&] { MergeStores(temp_ / name, Shards()); }), part));
+    EXPECT_EQ(DigestOfDir(temp_ / name), digest);
+  };
+  Recipe code = TestRecipe(), plan = TestRecipe(), world = TestRecipe();
+  code.code_version = "ffff";
+  plan.plan_text += "x";
+  world.worlds.begin()->second = "other";
+  refused("code", code, "the code is");
+  refused("plan", plan, "the plan differs at its line 5");
+  refused("world", world, "the world worlds/ridges.yaml is");
+}
+
+TEST_F(MergeTest, AMissingDirectoryIsRefused) {
+  EXPECT_TRUE(Contains(UserErrorOf([&] {
+                         MergeStores(temp_ / "new", {Shard(0), temp_ / "none"});
+                       }),
+                       "no such directory"));
+  EXPECT_TRUE(Contains(UserErrorOf([&] { MergeStores(temp_ / "new", {}); }), "nothing to merge"));
+  EXPECT_FALSE(fs::exists(temp_ / "new"));
+}
+
+TEST_F(MergeTest, AFailureCountsOnlyWhereNobodyHasTheMission) {
+  {
+    const auto store = ResultStore::Open(temp_ / "failed", TestRecipe(), TestLayout());
+    store->PutFailure({0, 0, 0}, "flown by shard 0");
+    store->PutFailure({0, 0, 1}, "flown by shard 1");
+    store->PutFailure({0, 0, 2}, "flown by shard 2");
+    store->Commit();
+  }
+  const MergeSummary summary = MergeStores(temp_ / "out", {Shard(0), temp_ / "failed", Shard(1)});
+  EXPECT_EQ(summary.failed, 1);
+  const std::vector<FailedMission> failures = ResultReader(temp_ / "out").Failures();
+  ASSERT_EQ(failures.size(), 1u);
+  EXPECT_EQ(failures[0].id, (RunId{0, 0, 2}));
+  EXPECT_EQ(failures[0].message, "flown by shard 2");
+  EXPECT_EQ(MergeStores(temp_ / "out", Shards()).failed, 0);
+  EXPECT_EQ(DigestOfDir(temp_ / "out"), DigestOfDir(temp_ / "whole"));
+}
+
+TEST_F(MergeTest, ADirectoryWithAWriterIsRefused) {
+  const auto store = ResultStore::Open(Shard(0), TestRecipe(), TestLayout());
+  EXPECT_TRUE(Contains(UserErrorOf([&] { MergeStores(Shard(0), {Shard(1)}); }), "another ed3r is writing"));
+}
+
+}  // namespace
+}  // namespace ed3r
