@@ -8,7 +8,6 @@
 #include "engine/core/check.h"
 #include "studies/paper/claims.h"
 #include "studies/tables/data_files.h"
-#include "studies/tables/layout.h"
 
 namespace ed3r {
 namespace {
@@ -28,7 +27,7 @@ void WriteFile(const fs::path& path, const std::string& text) {
 }  // namespace
 
 Report MakeReport(const RunResults& results) {
-  Report report{results.name, results.question, {}, {}};
+  Report report{results.name, {}, {}};
   for (const ArmData& arm : results.arms) {
     report.arms.push_back(ComputeMetrics(arm));
     report.generalisation.push_back(ComputeGeneralisation(arm));
@@ -37,9 +36,7 @@ Report MakeReport(const RunResults& results) {
 }
 
 std::string ReportText(const Report& report) {
-  std::string text = report.name + '\n';
-  if (!report.question.empty()) text += Wrap(report.question, "", kTerminalWidth);
-  text += '\n';
+  std::string text = report.name + "\n\n";
   if (report.arms.empty()) return text + "No missions.\n";
   text += ResultTable(report.arms, PaperClaims());
   const std::string generalisation = GeneralisationTable(report.generalisation);

@@ -13,13 +13,12 @@ namespace ed3r {
 
 // What a run holds.
 struct RunResults {
-  std::string name;      // of the sweep
-  std::string question;  // that the sweep asks; may be empty
+  std::string name;  // of the sweep
   std::vector<ArmData> arms;
 };
 
 struct Report {
-  std::string name, question;
+  std::string name;
   std::vector<ArmMetrics> arms;
   std::vector<Generalisation> generalisation;  // one per arm
 };

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-RunResults OneArm() { return {.name = "paper", .question = "Does it hold?", .arms = {FiveMissions()}}; }
+RunResults OneArm() { return {.name = "paper", .arms = {FiveMissions()}}; }
 
 std::string Content(const fs::path& path) {
   std::ostringstream text;
@@ -34,13 +34,13 @@ class ReportFilesTest : public testing::Test {
 
 TEST(ReportTest, TextHasItsParts) {
   const std::string text = ReportText(MakeReport(OneArm()));
-  EXPECT_TRUE(text.starts_with("paper\nDoes it hold?\n\nStage online\n"));
+  EXPECT_TRUE(text.starts_with("paper\n\nStage online\n"));
   EXPECT_NE(text.find("success (MSR)"), std::string::npos);
   EXPECT_NE(text.find("base station unseen"), std::string::npos);
 }
 
 TEST(ReportTest, RunWithoutMissionsSaysSo) {
-  EXPECT_EQ(ReportText(MakeReport({.name = "empty", .question = "", .arms = {}})), "empty\n\nNo missions.\n");
+  EXPECT_EQ(ReportText(MakeReport({.name = "empty", .arms = {}})), "empty\n\nNo missions.\n");
 }
 
 TEST(ReportTest, JsonHasArmsAndGeneralisation) {
