@@ -1,25 +1,38 @@
 #include "studies/report/load.h"
 
+#include <algorithm>
+
 #include "engine/store/reader.h"
 
 namespace ed3r {
+namespace {
+
+std::vector<MissionRecord> LoadMissions(ResultReader& reader, int stage, int arm) {
+  std::vector<MissionRecord> missions;
+  reader.ForEachMission(stage, arm, Steps::kSkip,
+                        [&](const StoredMission& mission) { missions.push_back(mission.record); });
+  return missions;
+}
+
+}  // namespace
 
 RunResults LoadRun(const std::string& dir) {
   ResultReader reader(dir);
-  RunResults results;
-  results.name = reader.Layout().name;
-  for (const ArmStatus& status : reader.Status()) {
-    ArmData arm;
-    arm.stage = status.stage;
-    arm.name = status.arm;
-    arm.failed = static_cast<int>(status.failed);
-    arm.missing = static_cast<int>(status.missing);
-    results.arms.push_back(std::move(arm));
+  const RunLayout& layout = reader.Layout();
+  RunResults results{layout.name, {}};
+  const std::vector<ArmStatus> status = reader.Status();
+  for (int s = 0; s < static_cast<int>(layout.stages.size()); ++s) {
+    const RunLayout::Stage& stage = layout.stages[s];
+    if (stage.missions == 0) continue;
+    for (int a = 0; a < static_cast<int>(stage.arms.size()); ++a) {
+      ArmData arm{stage.name, stage.arms[a].name, LoadMissions(reader, s, a)};
+      const auto flown = static_cast<std::int64_t>(arm.missions.size());
+      // Counted from the missions at hand: more may have come in since the status was read.
+      arm.failed = static_cast<int>(std::min(status[layout.RunIndex(s, a)].failed, stage.missions - flown));
+      arm.missing = static_cast<int>(stage.missions - flown - arm.failed);
+      results.arms.push_back(std::move(arm));
+    }
   }
-  reader.ForEachMission(Steps::kSkip, [&](const StoredMission& mission) {
-    const std::int64_t run = reader.Layout().RunIndex(mission.id.stage, mission.id.arm);
-    results.arms[static_cast<std::size_t>(run)].missions.push_back(mission.record);
-  });
   return results;
 }
 

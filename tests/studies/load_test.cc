@@ -1,0 +1,74 @@
+#include "studies/report/load.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/store/store_fixture.h"
+#include "tests/studies/five_missions.h"
+
+namespace ed3r {
+namespace {
+
+RunLayout Layout() {
+  return {.name = "baselines",
+          .seed = 7,
+          .stages = {{.name = "warmup", .missions = 2, .arms = {{"warmup", 0}}},
+                     {.name = "train", .missions = 0, .arms = {{"train-75", 0}}},
+                     {.name = "online", .missions = 8, .arms = {{"rbs", 5000}, {"ed3r-75", 5000}}}}};
+}
+
+MissionRecord Mission(int number) {
+  MissionRecord mission = FiveMissions().missions[static_cast<std::size_t>(number)];
+  mission.scenario = 5000 + number;
+  for (int k = 1; k <= 3; ++k) mission.steps.emplace_back().k = k;
+  return mission;
+}
+
+// All five missions of ed3r-75, one that failed, two that are missing; nothing of the other arms.
+void WriteRun(const std::string& dir) {
+  const auto store = ResultStore::Open(dir, TestRecipe(), Layout());
+  for (const int number : {3, 1, 4, 0, 2}) store->Put({2, 1, number}, Mission(number), 0.5);
+  store->PutFailure({2, 1, 6}, "a broken invariant");
+  store->Commit();
+}
+
+TEST(LoadRunTest, GivesFlyingArmsInPlanOrder) {
+  const TempDir temp;
+  WriteRun(temp / "run");
+  const RunResults run = LoadRun(temp / "run");
+  EXPECT_EQ(run.name, "baselines");
+  ASSERT_EQ(run.arms.size(), 3u);
+  EXPECT_EQ(run.arms[0].stage, "warmup");
+  EXPECT_EQ(run.arms[0].missing, 2);
+  EXPECT_EQ(run.arms[1].name, "rbs");
+  EXPECT_EQ(run.arms[1].missing, 8);
+  const ArmData& arm = run.arms[2];
+  EXPECT_EQ(arm.stage, "online");
+  EXPECT_EQ(arm.name, "ed3r-75");
+  EXPECT_EQ(arm.failed, 1);
+  EXPECT_EQ(arm.missing, 2);
+  ASSERT_EQ(arm.missions.size(), 5u);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(arm.missions[i].scenario, 5000 + i);
+    EXPECT_TRUE(arm.missions[i].steps.empty());
+  }
+}
+
+TEST(LoadRunTest, ReportOfAStoreIsTheReportOfItsMissions) {
+  const TempDir temp;
+  WriteRun(temp / "run");
+  const Report report = MakeReport(LoadRun(temp / "run"));
+  const ArmMetrics direct = ComputeMetrics(FiveMissions());
+  for (const char* metric : {"total_energy_kj", "mscs_pct", "wer_pct", "or_pct", "lf_accuracy_pct"}) {
+    EXPECT_EQ(report.arms[2][metric].value, direct[metric].value) << metric;
+    EXPECT_EQ(report.arms[2][metric].hi, direct[metric].hi) << metric;
+  }
+  EXPECT_EQ(ReportJson(report).at("arms").at("rbs").at("missing"), 8);
+}
+
+TEST(LoadRunTest, NoStoreIsAUserError) {
+  const TempDir temp;
+  EXPECT_TRUE(Contains(UserErrorOf([&] { LoadRun(temp / "nowhere"); }), "nowhere"));
+}
+
+}  // namespace
+}  // namespace ed3r
