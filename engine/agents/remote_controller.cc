@@ -36,7 +36,8 @@ RemoteController::RemoteController(const AgentContext& context)
              "the strategy asks the RC's network, and there is none");
 }
 
-MotionDecision RemoteController::ChooseMotion(const RcView& view, std::uint32_t timestep, CandidateTrace* trace) {
+MotionDecision RemoteController::ChooseMotion(const RcView& view, std::uint32_t timestep,
+                                              CandidateTrace* trace) {
   const AgentsConfig& agents = context_.config.agents;
   MotionDecision decision;
   decision.epsilon = context_.epsilon;
@@ -55,8 +56,8 @@ MotionDecision RemoteController::ChooseMotion(const RcView& view, std::uint32_t 
       return decision;
     }
   }
-  const bool explores = Stream(context_.seed, context_.scenario, Purpose::kExploration, timestep).Uniform() <
-                        decision.epsilon;
+  const bool explores =
+      Stream(context_.seed, context_.scenario, Purpose::kExploration, timestep).Uniform() < decision.epsilon;
   if (context_.strategy.motion == MotionPolicy::kNetwork && !explores) {
     ChooseGreedily(view, ranges, timestep, decision, trace);
     return decision;
@@ -83,12 +84,14 @@ void RemoteController::ChooseGreedily(const RcView& view, const ActionRanges& ra
     for (int i = 0; i < agents.candidates; ++i) indices.push_back(i);
 
   std::vector<double> rewards(indices.size());
-  const BestAction best = context_.networks.rc->Best(StateOf(view), Rows(commands, indices), rewards, workspace_);
+  const BestAction best =
+      context_.networks.rc->Best(StateOf(view), Rows(commands, indices), rewards, workspace_);
   const int chosen = indices[static_cast<std::size_t>(best.index)];
   decision.command = commands[static_cast<std::size_t>(chosen)];
   decision.rule = selection.rule;
   decision.predicted_reward = best.reward;
-  if (trace != nullptr) *trace = {std::move(commands), std::move(rewards), std::move(selection.candidates), chosen};
+  if (trace != nullptr)
+    *trace = {std::move(commands), std::move(rewards), std::move(selection.candidates), chosen};
 }
 
 double RemoteController::Predict(const RcView& view, const MotionCommand& command) {

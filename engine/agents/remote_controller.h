@@ -18,7 +18,8 @@ struct MotionDecision {
   MotionRule rule = MotionRule::kRandom;
   ConfidenceBand band = ConfidenceBand::kNone;
   double epsilon = 1.0;
-  double predicted_reward = std::numeric_limits<double>::quiet_NaN();  // of the command; NaN without a network
+  double predicted_reward =
+      std::numeric_limits<double>::quiet_NaN();  // of the command; NaN without a network
 };
 
 // The candidates of one greedy decision, for `ed3r explain`.
@@ -37,8 +38,8 @@ class RemoteController {
   MotionDecision ChooseMotion(const RcView& view, std::uint32_t timestep, CandidateTrace* trace = nullptr);
 
  private:
-  void ChooseGreedily(const RcView& view, const ActionRanges& ranges, std::uint32_t timestep, MotionDecision& decision,
-                      CandidateTrace* trace);
+  void ChooseGreedily(const RcView& view, const ActionRanges& ranges, std::uint32_t timestep,
+                      MotionDecision& decision, CandidateTrace* trace);
   double Predict(const RcView& view, const MotionCommand& command);
 
   const AgentContext context_;

@@ -23,15 +23,16 @@ Execution DrawAllowed(const AllowedExecutions& allowed, Stream& stream) {
 }  // namespace
 
 RobotAgent::RobotAgent(const AgentContext& context) : context_(context) {
-  ED3R_CHECK(context.strategy.execution != ExecutionPolicy::kNetwork || context.strategy.allowed.Count() == 1 ||
-                 context.networks.robot != nullptr,
+  ED3R_CHECK(context.strategy.execution != ExecutionPolicy::kNetwork ||
+                 context.strategy.allowed.Count() == 1 || context.networks.robot != nullptr,
              "the strategy asks the robot's network, and there is none");
 }
 
 ExecutionDecision RobotAgent::ChooseExecution(const RobotView& view, double epsilon, std::uint32_t timestep) {
   const AllowedExecutions& allowed = context_.strategy.allowed;
   Stream stream(context_.seed, context_.scenario, Purpose::kExecution, timestep);
-  if (context_.strategy.execution == ExecutionPolicy::kRules) return DecideByRules(context_.config.rbs, view, stream);
+  if (context_.strategy.execution == ExecutionPolicy::kRules)
+    return DecideByRules(context_.config.rbs, view, stream);
   if (allowed.Count() == 1) return {.execution = DrawAllowed(allowed, stream)};
   const bool explores =
       context_.strategy.execution == ExecutionPolicy::kRandom ||
@@ -57,7 +58,8 @@ std::array<double, 3> RobotAgent::PredictAll(const RobotView& view) {
   std::array<float, 3 * std::tuple_size_v<RobotAction>> rows{};
   for (const Execution execution : kExecutions) {
     const RobotAction action = ActionOf(execution);
-    std::copy(action.begin(), action.end(), rows.begin() + static_cast<std::ptrdiff_t>(execution) * action.size());
+    std::copy(action.begin(), action.end(),
+              rows.begin() + static_cast<std::ptrdiff_t>(execution) * action.size());
   }
   context_.networks.robot->Best(StateOf(view), rows, rewards, workspace_);
   return rewards;

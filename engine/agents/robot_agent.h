@@ -13,7 +13,7 @@ namespace ed3r {
 
 struct ExecutionDecision {
   Execution execution = Execution::kFull;
-  bool random = false;  // drawn, not deduced
+  bool random = false;                                                 // drawn, not deduced
   double predicted_reward = std::numeric_limits<double>::quiet_NaN();  // NaN where no network was asked
 };
 

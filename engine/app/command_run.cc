@@ -35,8 +35,9 @@ void Tell(const SweepSummary& summary, const std::string& dir) {
   fmt::print("\n");
   for (const ShelvedNetwork& network : summary.networks) {
     const TrainingReport& report = network.model->data().report;
-    fmt::print("network {}: {} epochs, best {}; R2 train {:.3f}, validation {:.3f}, held out {:.3f}; {}\n", network.name,
-               report.curve.size(), report.best_epoch, report.train.r2, report.validation.r2, report.test.r2, network.file);
+    fmt::print("network {}: {} epochs, best {}; R2 train {:.3f}, validation {:.3f}, held out {:.3f}; {}\n",
+               network.name, report.curve.size(), report.best_epoch, report.train.r2, report.validation.r2,
+               report.test.r2, network.file);
   }
   if (!summary.waiting_stage.empty())
     fmt::print("stage {} waits: missions that it builds on are missing or failed\n", summary.waiting_stage);
@@ -78,7 +79,8 @@ Command AddRun(CLI::App& program) {
       "run", "Flies a sweep and prints its table; the same command again continues where it stopped");
   options->sweep.AddTo(*parser);
   parser->add_option("--out", options->out, "Run directory; default results/runs/<sweep name>");
-  parser->add_option("--cache", options->cache, "Where trained networks are kept for all sweeps; default results/cache");
+  parser->add_option("--cache", options->cache,
+                     "Where trained networks are kept for all sweeps; default results/cache");
   parser->add_option("--threads", options->threads, "Threads; default all processors");
   parser->add_option("--shard", options->shard, "I/N: fly the I-th of N parts; 'ed3r merge' joins them");
   parser->add_flag("--quiet", options->quiet, "Neither progress nor table");

@@ -11,8 +11,8 @@ namespace ed3r {
 namespace {
 
 std::vector<Command> AddCommands(CLI::App& program) {
-  return {AddRun(program),    AddPlan(program),    AddStatus(program),  AddReport(program), AddDigest(program),
-          AddMerge(program),  AddParams(program),  AddPhysics(program), AddWorld(program), AddDoctor(program)};
+  return {AddRun(program),   AddPlan(program),   AddStatus(program),  AddReport(program), AddDigest(program),
+          AddMerge(program), AddParams(program), AddPhysics(program), AddWorld(program),  AddDoctor(program)};
 }
 
 int Main(int argc, char** argv) {

@@ -121,7 +121,11 @@ struct AgentsConfig {
     visit("mu2", self.mu2,
           {.min = 0, .max = 100, .source = kTable, .meaning = "weight of the penalty (Eq. 18)"});
     visit("energy_scale_j", self.energy_scale_j,
-          {.unit = "J", .min = 1, .max = 1e6, .source = "Eq. 21, R32", .meaning = "energy that counts as 1 in the reward: the largest a timestep takes"});
+          {.unit = "J",
+           .min = 1,
+           .max = 1e6,
+           .source = "Eq. 21, R32",
+           .meaning = "energy that counts as 1 in the reward: the largest a timestep takes"});
     visit("epsilon_min", self.epsilon_min,
           {.min = 0, .max = 1, .source = "Table ED3R configuration, R20", .meaning = "least exploration"});
     visit("epsilon_decay", self.epsilon_decay,

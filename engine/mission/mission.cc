@@ -94,7 +94,8 @@ MissionRecord Mission::Fly() {
     const FlownMove move = flight_.Execute(motion.command, k);
 
     const Arrival arrival = Arrive(k);
-    const ExecutionDecision execution = robot_.ChooseExecution(OnboardView(arrival), motion.epsilon, k);  // stage 2, on board
+    const ExecutionDecision execution =
+        robot_.ChooseExecution(OnboardView(arrival), motion.epsilon, k);  // stage 2, on board
 
     TimestepRecord step = OpenStep(k, motion, move, execution);
     RecordLink(arrival.conditions, arrival.rc_distance_m, arrival.link, step);

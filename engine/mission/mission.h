@@ -20,9 +20,9 @@ struct MissionTask {
   const Config& config;
   std::uint64_t seed = 0;
   std::uint32_t scenario = 0;
-  int mission = 0;         // its number within its arm, for the decay of epsilon (R20)
-  Networks networks = {};  // where the strategy asks any
-  int network_seed = -1;   // which of the arm's training seeds these are, for the record
+  int mission = 0;                          // its number within its arm, for the decay of epsilon (R20)
+  Networks networks = {};                   // where the strategy asks any
+  int network_seed = -1;                    // which of the arm's training seeds these are, for the record
   const std::atomic<bool>* stop = nullptr;  // checked between timesteps; set: Interrupted is thrown
   TraceSink* trace = nullptr;               // receives the flown path; for replays
 };

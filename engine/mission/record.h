@@ -109,7 +109,8 @@ void TimestepRecord::Describe(Self& s, Visitor&& visit) {
 
 template <class Self, class Visitor>
 void MissionRecord::Describe(Self& s, Visitor&& visit) {
-  visit("scenario", s.scenario), visit("site", s.site), visit("base_station", s.base_station), visit("network", s.network);
+  visit("scenario", s.scenario), visit("site", s.site), visit("base_station", s.base_station),
+      visit("network", s.network);
   visit("site_known", s.site_known), visit("base_station_known", s.base_station_known),
       visit("outcome", s.outcome);
   visit("timesteps", s.timesteps), visit("duration_s", s.duration_s), visit("movement_j", s.movement_j);
@@ -124,7 +125,8 @@ void MissionRecord::Describe(Self& s, Visitor&& visit) {
   visit("reward_sum", s.reward_sum), visit("absolute_reward_error_sum", s.absolute_reward_error_sum);
   visit("predicted_timesteps", s.predicted_timesteps), visit("start_x_m", s.start_x_m),
       visit("start_y_m", s.start_y_m);
-  visit("start_z_m", s.start_z_m), visit("start_yaw_rad", s.start_yaw_rad), visit("start_rc_distance_m", s.start_rc_distance_m);
+  visit("start_z_m", s.start_z_m), visit("start_yaw_rad", s.start_yaw_rad),
+      visit("start_rc_distance_m", s.start_rc_distance_m);
 }
 
 }  // namespace ed3r

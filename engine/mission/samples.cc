@@ -13,7 +13,8 @@ namespace {
 template <class State, class Action>
 auto RowOf(const State& state, const Action& action) {
   std::array<float, std::tuple_size_v<State> + std::tuple_size_v<Action>> row{};
-  std::transform(state.begin(), state.end(), row.begin(), [](double value) { return static_cast<float>(value); });
+  std::transform(state.begin(), state.end(), row.begin(),
+                 [](double value) { return static_cast<float>(value); });
   std::copy(action.begin(), action.end(), row.begin() + static_cast<std::ptrdiff_t>(state.size()));
   return row;
 }
@@ -41,7 +42,8 @@ RcView ViewAfter(const TimestepRecord& step) {
   return view;
 }
 
-RobotView OnboardView(const TimestepRecord& step, const RcView& before, double battery_j, const Config& flown) {
+RobotView OnboardView(const TimestepRecord& step, const RcView& before, double battery_j,
+                      const Config& flown) {
   RobotView view;
   view.yaw_rad = step.yaw_rad;
   view.tilt_rad = step.tilt_rad;

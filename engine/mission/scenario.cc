@@ -51,9 +51,9 @@ Scenario DealScenario(const Scene& scene, const MissionConfig& mission, std::uin
 }
 
 int PlacesInPlay(const Scene& scene, const MissionConfig& mission) {
-  return static_cast<int>(InPlay(scene.Sites(), mission.sites, "mission.sites", scene.Name()).size() *
-                          InPlay(scene.BaseStations(), mission.base_stations, "mission.base_stations", scene.Name())
-                              .size());
+  return static_cast<int>(
+      InPlay(scene.Sites(), mission.sites, "mission.sites", scene.Name()).size() *
+      InPlay(scene.BaseStations(), mission.base_stations, "mission.base_stations", scene.Name()).size());
 }
 
 Conditions DrawConditions(const Config& config, std::uint64_t seed, std::uint32_t scenario,

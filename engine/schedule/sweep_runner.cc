@@ -77,8 +77,10 @@ Worlds LoadWorlds(const SweepPlan& plan) {
   return worlds;
 }
 
-MissionTask TaskOf(const SweepPlan& plan, const Worlds& worlds, const NetworkShelf* networks, const RunId& id) {
-  const Arm& arm = plan.stages.at(static_cast<std::size_t>(id.stage)).arms.at(static_cast<std::size_t>(id.arm));
+MissionTask TaskOf(const SweepPlan& plan, const Worlds& worlds, const NetworkShelf* networks,
+                   const RunId& id) {
+  const Arm& arm =
+      plan.stages.at(static_cast<std::size_t>(id.stage)).arms.at(static_cast<std::size_t>(id.arm));
   const Scene& scene = *worlds.at(arm.config.mission.world);
   MissionTask task{.scene = scene, .config = arm.config, .seed = plan.seed};
   task.scenario = static_cast<std::uint32_t>(arm.config.mission.first_scenario + id.mission);

@@ -23,7 +23,8 @@ Worlds LoadWorlds(const SweepPlan& plan);
 
 // What a plan makes of a mission: the same for flying, replaying and explaining.
 // `networks` may be null for arms that ask none. Plan, worlds and networks must outlive the task.
-MissionTask TaskOf(const SweepPlan& plan, const Worlds& worlds, const NetworkShelf* networks, const RunId& id);
+MissionTask TaskOf(const SweepPlan& plan, const Worlds& worlds, const NetworkShelf* networks,
+                   const RunId& id);
 
 struct SweepOptions {
   std::string dir;
@@ -34,8 +35,8 @@ struct SweepOptions {
 };
 
 struct SweepSummary {
-  RunSummary flown;                // of this session
-  std::int64_t stored_before = 0;  // missions that were there already
+  RunSummary flown;                      // of this session
+  std::int64_t stored_before = 0;        // missions that were there already
   std::vector<ShelvedNetwork> networks;  // trained or found
   std::string waiting_stage;  // a stage that could not begin because a shard or a failed mission is missing
 };

@@ -21,7 +21,8 @@ bool RobotChooses(const Strategy& strategy) {
 // Stages that `stage` builds on, directly or not.
 std::set<std::string> Foundations(const SweepPlan& plan, const Stage& stage) {
   std::set<std::string> found(stage.after.begin(), stage.after.end());
-  for (auto it = plan.stages.rbegin(); it != plan.stages.rend(); ++it)  // a stage stands behind those it builds on
+  for (auto it = plan.stages.rbegin(); it != plan.stages.rend();
+       ++it)  // a stage stands behind those it builds on
     if (found.contains(it->name)) found.insert(it->after.begin(), it->after.end());
   return found;
 }
@@ -32,7 +33,8 @@ std::pair<int, int> WarmupOf(const SweepPlan& plan, const Stage& stage, std::str
   for (std::size_t s = 0; s < plan.stages.size(); ++s) {
     if (plan.stages[s].kind != StageKind::kFly || !foundations.contains(plan.stages[s].name)) continue;
     for (std::size_t a = 0; a < plan.stages[s].arms.size(); ++a)
-      if (plan.stages[s].arms[a].config.mission.strategy == source) return {static_cast<int>(s), static_cast<int>(a)};
+      if (plan.stages[s].arms[a].config.mission.strategy == source)
+        return {static_cast<int>(s), static_cast<int>(a)};
   }
   return {-1, -1};
 }
@@ -50,7 +52,9 @@ struct Samples {
 
 Samples ReadSamples(ResultReader& reader, const SweepPlan& plan, std::pair<int, int> warmup,
                     const AgentsConfig& agents) {
-  const Config& flown = plan.stages[static_cast<std::size_t>(warmup.first)].arms[static_cast<std::size_t>(warmup.second)].config;
+  const Config& flown = plan.stages[static_cast<std::size_t>(warmup.first)]
+                            .arms[static_cast<std::size_t>(warmup.second)]
+                            .config;
   Samples samples;
   reader.ForEachMission(warmup.first, warmup.second, Steps::kLoad, [&](const StoredMission& mission) {
     AppendSamples(mission.record, mission.id.mission, flown, agents, samples.rc, samples.robot);
@@ -91,10 +95,11 @@ void CheckTraining(const SweepPlan& plan) {
         return other.kind == StageKind::kTrain && foundations.contains(other.name);
       });
       if (!trained || WarmupOf(plan, stage, strategy.networks).first < 0)
-        throw UserError(fmt::format(
-            "{}: stage {}: arm {} asks networks, so the stage must come after a training stage ('kind: train') that comes "
-            "after a stage with strategy {}",
-            plan.file, stage.name, arm.name, strategy.networks));
+        throw UserError(
+            fmt::format("{}: stage {}: arm {} asks networks, so the stage must come after a training stage "
+                        "('kind: train') that comes "
+                        "after a stage with strategy {}",
+                        plan.file, stage.name, arm.name, strategy.networks));
     }
   }
 }
@@ -112,7 +117,8 @@ class TrainingStage {
     std::vector<std::size_t> rc_jobs, robot_jobs;  // by training seed
   };
   void Collect();
-  std::size_t AddJob(const NetworkDesign& design, const DataSet& data, const Arm& arm, std::string_view source, int seed);
+  std::size_t AddJob(const NetworkDesign& design, const DataSet& data, const Arm& arm,
+                     std::string_view source, int seed);
   const Samples& SamplesFor(std::pair<int, int> warmup, const AgentsConfig& agents);
 
   const SweepPlan& plan_;
@@ -134,14 +140,15 @@ const Samples& TrainingStage::SamplesFor(std::pair<int, int> warmup, const Agent
 
 std::size_t TrainingStage::AddJob(const NetworkDesign& design, const DataSet& data, const Arm& arm,
                                   std::string_view source, int seed) {
-  TrainJob job{.design = design,
-               .data = &data,
-               .config = arm.config.training,
-               .seed = static_cast<std::uint64_t>(arm.config.training.seed + seed),
-               .code_version = ThisCode().source_hash,
-               .notes = {{"warm-up", std::string(source)}, {"eta_min", fmt::format("{}", arm.config.agents.eta_min)}}};
-  std::string name =
-      fmt::format("{} from {}, eta_min {}, seed {}", design.name, source, arm.config.agents.eta_min, job.seed);
+  TrainJob job{
+      .design = design,
+      .data = &data,
+      .config = arm.config.training,
+      .seed = static_cast<std::uint64_t>(arm.config.training.seed + seed),
+      .code_version = ThisCode().source_hash,
+      .notes = {{"warm-up", std::string(source)}, {"eta_min", fmt::format("{}", arm.config.agents.eta_min)}}};
+  std::string name = fmt::format("{} from {}, eta_min {}, seed {}", design.name, source,
+                                 arm.config.agents.eta_min, job.seed);
   for (std::size_t i = 0; i < jobs_.size(); ++i)
     if (names_[i] == name && jobs_[i].data == job.data && TrainingKey(jobs_[i]) == TrainingKey(job)) return i;
   jobs_.push_back(std::move(job));
@@ -175,7 +182,8 @@ std::unique_ptr<NetworkShelf> TrainingStage::Run() {
   train.threads = options_.threads;
   train.stop = options_.stop;
   const std::vector<std::shared_ptr<const Model>> models = TrainAll(jobs_, train);
-  if (std::any_of(models.begin(), models.end(), [](const auto& model) { return model == nullptr; })) return nullptr;
+  if (std::any_of(models.begin(), models.end(), [](const auto& model) { return model == nullptr; }))
+    return nullptr;
 
   auto shelf = std::make_unique<NetworkShelf>();
   for (std::size_t i = 0; i < jobs_.size(); ++i)
@@ -183,7 +191,8 @@ std::unique_ptr<NetworkShelf> TrainingStage::Run() {
   for (const ArmNeed& need : needs_) {
     std::vector<NetworkShelf::Pair>& pairs = shelf->by_arm_[{need.stage, need.arm}];
     for (std::size_t seed = 0; seed < need.rc_jobs.size(); ++seed)
-      pairs.push_back({models[need.rc_jobs[seed]], need.robot_jobs.empty() ? nullptr : models[need.robot_jobs[seed]]});
+      pairs.push_back(
+          {models[need.rc_jobs[seed]], need.robot_jobs.empty() ? nullptr : models[need.robot_jobs[seed]]});
   }
   return shelf;
 }

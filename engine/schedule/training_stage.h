@@ -20,8 +20,8 @@ namespace ed3r {
 
 // A network that was trained or found in the cache.
 struct ShelvedNetwork {
-  std::string name;   // "rc from random, eta_min 0.75, seed 1"
-  std::string file;   // in the cache
+  std::string name;  // "rc from random, eta_min 0.75, seed 1"
+  std::string file;  // in the cache
   std::shared_ptr<const Model> model;
 };
 

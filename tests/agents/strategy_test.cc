@@ -46,8 +46,13 @@ TEST(StrategyTest, RandomRobotUsesAllThreeActionsAlike) {
   const Config config;
   int counts[3] = {};
   for (std::uint32_t scenario = 0; scenario < 3000; ++scenario) {
-    const RobotAgent robot(config, FindStrategy("random"), 1, scenario);
-    ++counts[static_cast<int>(robot.ChooseExecution(RobotView(), 1).execution)];
+    RobotAgent robot({.config = config,
+                      .strategy = FindStrategy("random"),
+                      .networks = {},
+                      .size_m = {530, 530, 165},
+                      .seed = 1,
+                      .scenario = scenario});
+    ++counts[static_cast<int>(robot.ChooseExecution(RobotView(), 1.0, 1).execution)];
   }
   for (int count : counts) EXPECT_NEAR(count, 1000, 130);  // five standard deviations
 }

@@ -43,8 +43,8 @@ class ScratchFolder {
 // `arguments` as a shell would read them; `environment` like "ED3R_SIMD=scalar".
 inline CommandResult Ed3r(const std::string& arguments, const std::string& environment = "") {
   const ScratchFolder scratch;
-  const std::string line = environment + " " ED3R_BINARY " " + arguments + " >" + (scratch / "out").string() + " 2>" +
-                           (scratch / "err").string();
+  const std::string line = environment + " " ED3R_BINARY " " + arguments + " >" + (scratch / "out").string() +
+                           " 2>" + (scratch / "err").string();
   const int status = std::system(line.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadAll(scratch / "out"), ReadAll(scratch / "err")};
 }

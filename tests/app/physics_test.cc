@@ -17,19 +17,23 @@ namespace {
 using Values = std::map<std::string, double>;
 
 Values Defaults() {
-  return {{"robot.mass_kg", 1.816},       {"robot.propeller_radius_m", 0.1}, {"robot.propellers", 4},
-          {"robot.speed_mps", 5},         {"robot.drag_horizontal", 0.55},   {"robot.drag_vertical", 0.35},
-          {"robot.battery_mah", 3500},    {"robot.battery_v", 11.1},         {"cpu.frequency_hz", 3.2e9},
-          {"cpu.cores", 6},               {"cpu.flops_per_cycle", 8},        {"cpu.capacitance", 1e-28},
-          {"radio.distance_m", 60},       {"radio.bandwidth_hz", 22.5e6},    {"radio.shadowing_db", 0},
-          {"environment.air_density_kgm3", 1.225}, {"environment.gravity_mps2", 9.8}};
+  return {{"robot.mass_kg", 1.816},         {"robot.propeller_radius_m", 0.1},
+          {"robot.propellers", 4},          {"robot.speed_mps", 5},
+          {"robot.drag_horizontal", 0.55},  {"robot.drag_vertical", 0.35},
+          {"robot.battery_mah", 3500},      {"robot.battery_v", 11.1},
+          {"cpu.frequency_hz", 3.2e9},      {"cpu.cores", 6},
+          {"cpu.flops_per_cycle", 8},       {"cpu.capacitance", 1e-28},
+          {"radio.distance_m", 60},         {"radio.bandwidth_hz", 22.5e6},
+          {"radio.shadowing_db", 0},        {"environment.air_density_kgm3", 1.225},
+          {"environment.gravity_mps2", 9.8}};
 }
 
 // Written from the paper and the readings, not from the program.
 Values Expected(Values v) {
   Values e;
   const double area = std::numbers::pi * v["robot.propeller_radius_m"] * v["robot.propeller_radius_m"];
-  const double m = v["robot.mass_kg"], g = v["environment.gravity_mps2"], rho = v["environment.air_density_kgm3"];
+  const double m = v["robot.mass_kg"], g = v["environment.gravity_mps2"],
+               rho = v["environment.air_density_kgm3"];
   const double speed3 = v["robot.speed_mps"] * v["robot.speed_mps"] * v["robot.speed_mps"];
   e["hover_power_w"] = std::sqrt(m * m * m * g * g * g / (2 * rho * v["robot.propellers"] * area));
   e["horizontal_power_w"] = e["hover_power_w"] + rho * 0.23 * 0.47 * speed3 * v["robot.drag_horizontal"] / 2;
@@ -43,7 +47,8 @@ Values Expected(Values v) {
   const double noise_dbm = -158 + 10 * std::log10(v["radio.bandwidth_hz"]);
   const double snr = std::pow(10, (power_dbm - loss - v["radio.shadowing_db"] - noise_dbm) / 10);
   e["transmit_power_dbm"] = power_dbm;
-  e["rate_bps"] = v["radio.bandwidth_hz"] * std::min(4.0, std::max(0.12, std::log1p(snr) / std::numbers::ln2));
+  e["rate_bps"] =
+      v["radio.bandwidth_hz"] * std::min(4.0, std::max(0.12, std::log1p(snr) / std::numbers::ln2));
   e["transmission_time_s"] = 33 * 519e3 * 8 / e["rate_bps"];
   e["transmission_energy_j"] = e["transmission_time_s"] * std::pow(10, power_dbm / 10) / 1000;
   for (const auto& [model, gflop] : {std::pair{"full", 20.23}, std::pair{"quantized", 5.05}}) {
@@ -106,7 +111,8 @@ TEST(PhysicsCommandTest, BadInputIsOneLineAndExitTwo) {
   const std::pair<const char*, const char*> cases[] = {
       {"physics --set robot.mass_kg=-1",
        "--set robot.mass_kg=-1: robot.mass_kg: '-1' is not allowed; allowed: 0.05 .. 50 kg\n"},
-      {"physics --set robot.mas_kg=1", "--set robot.mas_kg=1: robot.mas_kg: unknown key; did you mean robot.mass_kg?\n"},
+      {"physics --set robot.mas_kg=1",
+       "--set robot.mas_kg=1: robot.mas_kg: unknown key; did you mean robot.mass_kg?\n"},
       {"physics --set robot.mass_kg", "--set robot.mass_kg: expected KEY=VALUE, e.g. robot.mass_kg=2.1\n"},
       {"physics --set radio.distance_m=inf",
        "--set radio.distance_m=inf: radio.distance_m: 'inf' is not allowed; allowed: 0 .. 100000 m\n"},

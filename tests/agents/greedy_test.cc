@@ -1,0 +1,151 @@
+// Both agents with networks: greedy choice, exploration, hovering, regions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/agents/features.h"
+#include "engine/agents/remote_controller.h"
+#include "engine/agents/robot_agent.h"
+#include "engine/core/check.h"
+#include "kernels/dense_net.h"
+
+namespace ed3r {
+namespace {
+
+// A network of the design with random weights: some function of its inputs.
+Model RandomModel(const NetworkDesign& design, std::uint32_t seed) {
+  ModelData data;
+  data.weights.resize(ParameterCount(ShapeOf(design)));
+  Stream stream(seed, 0, Purpose::kTraining);
+  for (float& weight : data.weights) weight = static_cast<float>(0.2 * stream.Normal());
+  data.scaling.input_mean.assign(design.features.size(), 0.0);
+  data.scaling.input_sd.assign(design.features.size(), 10.0);
+  return Model(design, data);
+}
+
+class GreedyTest : public ::testing::Test {
+ protected:
+  AgentContext Context(std::string_view strategy, double epsilon) {
+    return {config_, FindStrategy(strategy), {&rc_, &robot_}, {530, 530, 165}, 1, 2, epsilon};
+  }
+  RcView View() {
+    RcView view;
+    view.pose = {{250, 260, 60}, 0.3, 0.4};
+    view.rc_distance_m = 50;
+    return view;
+  }
+
+  Config config_;
+  Model rc_ = RandomModel(kRcNetwork, 1);
+  Model robot_ = RandomModel(kRobotNetwork, 2);
+  Model::Workspace workspace_;
+};
+
+TEST_F(GreedyTest, TheRcTakesTheBestOfItsCandidates) {
+  RemoteController controller(Context("ed3r", 0.0));
+  CandidateTrace trace;
+  const MotionDecision decision = controller.ChooseMotion(View(), 1, &trace);
+  EXPECT_EQ(decision.rule, MotionRule::kGreedy);
+  ASSERT_EQ(trace.commands.size(), 1000u);
+  for (std::size_t i = 0; i < trace.commands.size(); ++i) {
+    const double reward = rc_.Predict(StateOf(View()), ActionOf(trace.commands[i]), workspace_);
+    ASSERT_EQ(reward, trace.rewards[i]);
+    ASSERT_LE(reward, decision.predicted_reward);
+  }
+  EXPECT_EQ(decision.predicted_reward, trace.rewards[static_cast<std::size_t>(trace.chosen)]);
+}
+
+TEST_F(GreedyTest, EpsilonOneExplores) {
+  RemoteController controller(Context("ed3r", 1.0));
+  const MotionDecision decision = controller.ChooseMotion(View(), 1);
+  EXPECT_EQ(decision.rule, MotionRule::kRandom);
+  EXPECT_FALSE(
+      std::isnan(decision.predicted_reward));  // what the network says of a random command is recorded too
+}
+
+TEST_F(GreedyTest, EpsilonIsAShareOfTimesteps) {
+  int explored = 0;
+  for (std::uint32_t scenario = 0; scenario < 400; ++scenario) {
+    AgentContext context = Context("ed3r", 0.25);
+    context.scenario = scenario;
+    RemoteController controller(context);
+    explored += controller.ChooseMotion(View(), 1).rule == MotionRule::kRandom;
+  }
+  EXPECT_NEAR(explored, 100, 44);  // five standard deviations
+}
+
+TEST_F(GreedyTest, EpsilonDecaysPerMissionToItsFloor) {
+  const AgentsConfig agents;
+  EXPECT_EQ(EpsilonOfMission(agents, FindStrategy("ed3r"), 0), 1.0);
+  EXPECT_NEAR(EpsilonOfMission(agents, FindStrategy("ed3r"), 10), std::pow(0.95, 10), 1e-12);
+  EXPECT_EQ(EpsilonOfMission(agents, FindStrategy("ed3r"), 849), 0.01);
+  EXPECT_EQ(EpsilonOfMission(agents, FindStrategy("rbs"), 849), 1.0);
+}
+
+TEST_F(GreedyTest, AReliableDetectionHovers) {
+  RemoteController controller(Context("ed3r", 0.0));
+  RcView view = View();
+  controller.ChooseMotion(view, 1);
+  view.previous_scs = 0.9;
+  const MotionDecision decision = controller.ChooseMotion(view, 2);
+  EXPECT_EQ(decision.rule, MotionRule::kHover);
+  EXPECT_TRUE(decision.command.hover);
+  EXPECT_EQ(decision.command.displacement_m.norm(), 0.0);
+  EXPECT_EQ(decision.command.tilt_rad, view.pose.tilt_rad);
+  EXPECT_TRUE(controller.ChooseMotion(view, 3).complete);
+}
+
+TEST_F(GreedyTest, StuckInARegionItLeaves) {
+  RemoteController controller(Context("ed3r", 0.0));
+  RcView view = View();
+  view.pose.position_m = {235, 270, 55};  // 5 m from the next cubes in x and z
+  for (std::uint32_t k = 1; k <= 21; ++k)
+    EXPECT_EQ(controller.ChooseMotion(view, k).rule, MotionRule::kGreedy);
+  const MotionDecision decision = controller.ChooseMotion(view, 22);  // the 21st visit counted
+  EXPECT_EQ(decision.rule, MotionRule::kRegionUnexplored);
+  const Eigen::Vector3d end_m = view.pose.position_m + decision.command.displacement_m;
+  const auto cube = [](const Eigen::Vector3d& p) { return (p / 60.0).array().floor().matrix().eval(); };
+  EXPECT_NE(cube(end_m), cube(view.pose.position_m));
+
+  config_.agents.region_avoidance = false;
+  RemoteController careless(Context("ed3r", 0.0));
+  for (std::uint32_t k = 1; k <= 30; ++k) EXPECT_EQ(careless.ChooseMotion(view, k).rule, MotionRule::kGreedy);
+}
+
+TEST_F(GreedyTest, TheRobotTakesTheBestAllowedAction) {
+  RobotView view;
+  view.bandwidth_hz = 20;
+  view.rate_bps = 30;
+  for (const char* name : {"ed3r", "ablation-3"}) {
+    RobotAgent robot(Context(name, 0.0));
+    const std::array<double, 3> rewards = robot.PredictAll(view);
+    const ExecutionDecision decision = robot.ChooseExecution(view, 0.0, 1);
+    EXPECT_FALSE(decision.random);
+    for (const Execution execution : {Execution::kOffload, Execution::kFull, Execution::kQuantized}) {
+      if (FindStrategy(name).allowed.Allows(execution)) {
+        EXPECT_LE(rewards[static_cast<std::size_t>(execution)], decision.predicted_reward) << name;
+      }
+    }
+    EXPECT_TRUE(FindStrategy(name).allowed.Allows(decision.execution));
+  }
+}
+
+TEST_F(GreedyTest, FixedExecutionsAskNoNetwork) {
+  AgentContext context = Context("ablation-2", 1.0);
+  context.networks.robot = nullptr;
+  RobotAgent robot(context);
+  const ExecutionDecision decision = robot.ChooseExecution(RobotView(), 1.0, 1);
+  EXPECT_EQ(decision.execution, Execution::kQuantized);
+  EXPECT_FALSE(decision.random);
+  EXPECT_TRUE(std::isnan(decision.predicted_reward));
+}
+
+TEST_F(GreedyTest, MissingNetworksAreAnInternalError) {
+  AgentContext context = Context("ed3r", 0.0);
+  context.networks = {};
+  EXPECT_THROW(RemoteController{context}, InternalError);
+  EXPECT_THROW(RobotAgent{context}, InternalError);
+}
+
+}  // namespace
+}  // namespace ed3r

@@ -1,0 +1,130 @@
+// Whole missions over a small world: ledger, outcomes, common random numbers.
+#include "engine/mission/mission.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/core/check.h"
+#include "engine/core/interrupt.h"
+#include "tests/mission/small_world.h"
+
+namespace ed3r {
+namespace {
+
+class MissionTest : public ::testing::Test {
+ protected:
+  MissionRecord Fly(const std::string& strategy, std::uint32_t scenario,
+                    const std::atomic<bool>* stop = nullptr) {
+    config_.mission.strategy = strategy;
+    MissionTask task{.scene = scene_, .config = config_};
+    task.seed = 5;
+    task.scenario = scenario;
+    task.stop = stop;
+    return FlyMission(task);
+  }
+
+  Scene scene_{FlatParts()};
+  Config config_;
+};
+
+TEST_F(MissionTest, ARandomWalkFliesUntilTheBatteryCannotPay) {
+  const MissionRecord record = Fly("random", 3);
+  EXPECT_EQ(record.outcome, static_cast<std::int64_t>(Outcome::kBatteryDepleted));
+  EXPECT_GT(record.timesteps, 30);
+  EXPECT_GE(record.battery_left_j, 0.0);
+  EXPECT_LT(record.battery_left_j, 12000.0);  // less than the dearest timestep
+  EXPECT_EQ(record.contact_steps, 0);
+  EXPECT_NEAR(record.total_j + record.battery_left_j, 139860.0, 139860.0 * 1e-9);
+  double sum_j = 0.0;
+  for (const TimestepRecord& step : record.steps) sum_j += step.total_j;
+  EXPECT_NEAR(sum_j, record.total_j, record.total_j * 1e-12);
+}
+
+TEST_F(MissionTest, RbsFindsTheFireAndCompletesFromAHover) {
+  int successes = 0;
+  for (std::uint32_t scenario = 0; scenario < 12; ++scenario) {
+    const MissionRecord record = Fly("rbs", scenario);
+    if (record.outcome != static_cast<std::int64_t>(Outcome::kSuccess)) continue;
+    ++successes;
+    ASSERT_GE(record.steps.size(), 2u);
+    const TimestepRecord& last = record.steps.back();
+    const TimestepRecord& before = record.steps[record.steps.size() - 2];
+    EXPECT_GE(last.scs, config_.agents.eta_min);
+    EXPECT_GE(before.scs, config_.agents.eta_min);
+    EXPECT_EQ(last.motion_rule, static_cast<std::int64_t>(MotionRule::kHover));
+    EXPECT_EQ(last.horizontal_s + last.ascent_s + last.descent_s, 0.0);
+    EXPECT_TRUE(last.fire_in_view || before.fire_in_view);
+  }
+  EXPECT_GE(successes, 4);
+}
+
+// Arms that fly a scenario meet the same start, site and draws, whatever they do (common random numbers).
+TEST_F(MissionTest, ArmsMeetTheSameNature) {
+  const MissionRecord walk = Fly("random", 2);
+  const MissionRecord rules = Fly("rbs", 2);
+  EXPECT_EQ(walk.site, rules.site);
+  EXPECT_EQ(walk.start_x_m, rules.start_x_m);
+  for (std::size_t k = 0; k < std::min(walk.steps.size(), rules.steps.size()); ++k) {
+    EXPECT_EQ(walk.steps[k].cpu_hz, rules.steps[k].cpu_hz);
+    EXPECT_EQ(walk.steps[k].bandwidth_hz, rules.steps[k].bandwidth_hz);
+    EXPECT_EQ(walk.steps[k].shadowing_db, rules.steps[k].shadowing_db);
+  }
+}
+
+TEST_F(MissionTest, AFalsePositiveHasNoFireInViewWhenItCompletes) {
+  config_.perception.distractors_per_km2 = 4000;
+  int false_positives = 0;
+  for (std::uint32_t scenario = 0; scenario < 20; ++scenario) {
+    const MissionRecord record = Fly("rbs", scenario);
+    if (record.outcome != static_cast<std::int64_t>(Outcome::kFalsePositive)) continue;
+    ++false_positives;
+    EXPECT_EQ(record.steps.back().fire_in_view, 0);
+    EXPECT_EQ(record.steps[record.steps.size() - 2].fire_in_view, 0);
+  }
+  EXPECT_GT(false_positives, 3);
+}
+
+TEST_F(MissionTest, MechanismsCanBeSwitchedOff) {
+  config_.agents.early_completion = false;
+  EXPECT_EQ(Fly("rbs", 0).outcome, static_cast<std::int64_t>(Outcome::kBatteryDepleted));
+}
+
+TEST_F(MissionTest, HoveringIsBilledWhileTheRobotWaits) {
+  for (const TimestepRecord& step : Fly("random", 1).steps) {
+    EXPECT_NEAR(step.hover_sensing_j, 3.0 * 135.3, 0.2);
+    EXPECT_EQ(step.sensing_s, 3.0);
+    if (step.execution == static_cast<std::int64_t>(Execution::kOffload)) {
+      EXPECT_EQ(step.computing_s, 0.0);
+      EXPECT_GT(step.transmitting_s, 0.0);
+      EXPECT_GT(step.hover_transmitting_j, 0.0);
+    } else {
+      EXPECT_EQ(step.transmission_j, 0.0);
+      EXPECT_GT(step.hover_computing_j, 0.0);
+    }
+  }
+}
+
+TEST_F(MissionTest, TheSameTaskGivesTheSameBits) {
+  const MissionRecord first = Fly("rbs", 4);
+  const MissionRecord second = Fly("rbs", 4);
+  ASSERT_EQ(first.steps.size(), second.steps.size());
+  EXPECT_EQ(first.total_j, second.total_j);
+  for (std::size_t k = 0; k < first.steps.size(); ++k) {
+    EXPECT_EQ(first.steps[k].x_m, second.steps[k].x_m);
+    EXPECT_EQ(first.steps[k].scs, second.steps[k].scs);
+  }
+}
+
+TEST_F(MissionTest, StopsWhenAsked) {
+  const std::atomic<bool> stop{true};
+  EXPECT_THROW(Fly("random", 0, &stop), Interrupted);
+}
+
+TEST_F(MissionTest, AnEndlessMissionIsAFailure) {
+  config_.mission.max_timesteps = 3;
+  EXPECT_THROW(Fly("random", 0), InternalError);
+}
+
+}  // namespace
+}  // namespace ed3r
