@@ -7,9 +7,10 @@
 
 namespace ed3r {
 
-Score DetectFromProfile(const View& view, const PerceptionConfig& perception, DetectionModel model, int frames,
-                        std::uint64_t seed, std::uint32_t scenario, std::uint32_t timestep) {
-  const double signal = perception.fire_weight * view.fire_share + perception.smoke_weight * view.smoke_share +
+Score DetectFromProfile(const View& view, const PerceptionConfig& perception, DetectionModel model,
+                        int frames, std::uint64_t seed, std::uint32_t scenario, std::uint32_t timestep) {
+  const double signal = perception.fire_weight * view.fire_share +
+                        perception.smoke_weight * view.smoke_share +
                         perception.distractor_weight * view.distractor_share;
   if (signal <= 0.0) return {};
   const ResponseConfig& response = model == DetectionModel::kFull ? perception.full : perception.quantized;

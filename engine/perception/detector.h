@@ -13,7 +13,7 @@ namespace ed3r {
 enum class DetectionModel { kFull, kQuantized };
 
 // Keyed draws: both models meet the same fluctuation at a timestep, so that arms differ by the model alone.
-Score DetectFromProfile(const View& view, const PerceptionConfig& perception, DetectionModel model, int frames,
-                        std::uint64_t seed, std::uint32_t scenario, std::uint32_t timestep);
+Score DetectFromProfile(const View& view, const PerceptionConfig& perception, DetectionModel model,
+                        int frames, std::uint64_t seed, std::uint32_t scenario, std::uint32_t timestep);
 
 }  // namespace ed3r

@@ -22,8 +22,8 @@ struct Distractor {
 };
 
 // Drawn per mission, the same for all arms that fly the scenario.
-std::vector<Distractor> DrawDistractors(const Scene& scene, const PerceptionConfig& perception, std::uint64_t seed,
-                                        std::uint32_t scenario);
+std::vector<Distractor> DrawDistractors(const Scene& scene, const PerceptionConfig& perception,
+                                        std::uint64_t seed, std::uint32_t scenario);
 
 struct View {
   double fire_share = 0.0;        // visible flame as a share of the image, after haze

@@ -6,12 +6,13 @@
 namespace ed3r {
 
 struct Link {
-  double path_loss_db = 0.0;         // L_0 + 10 e log10(delta / delta_0), without shadowing
-  double transmit_power_dbm = 0.0;   // p_k: reaches the target level over the path loss, within the radio's limits
+  double path_loss_db = 0.0;  // L_0 + 10 e log10(delta / delta_0), without shadowing
+  double transmit_power_dbm =
+      0.0;  // p_k: reaches the target level over the path loss, within the radio's limits
   double transmit_power_w = 0.0;
-  double signal_to_noise = 0.0;      // linear
-  double efficiency_bps_hz = 0.0;    // log2(1 + SNR) within [se_min, se_max]
-  double rate_bps = 0.0;             // d_k
+  double signal_to_noise = 0.0;    // linear
+  double efficiency_bps_hz = 0.0;  // log2(1 + SNR) within [se_min, se_max]
+  double rate_bps = 0.0;           // d_k
 };
 
 // distance_m is 3-D and counts as at least the reference distance; shadowing_db adds to the path loss and is not

@@ -8,7 +8,8 @@ namespace ed3r {
 namespace {
 
 double HoverPowerW(const RobotConfig& robot, const EnvironmentConfig& environment, HoverForm form) {
-  const double disc_m2 = std::numbers::pi * robot.propeller_radius_m * robot.propeller_radius_m;  // A_prop (R1)
+  const double disc_m2 =
+      std::numbers::pi * robot.propeller_radius_m * robot.propeller_radius_m;  // A_prop (R1)
   const double g3 = std::pow(environment.gravity_mps2, 3);
   const double mass_term = std::pow(robot.mass_kg, 1.5);
   if (form == HoverForm::kPrinted)
