@@ -36,7 +36,8 @@ int Decimals(std::string_view number) {
     if (digits.starts_with('+')) digits.remove_prefix(1);
     int exponent = 0;
     std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
-    decimals -= exponent;
+    constexpr int kExponents = 400;  // beyond those of a double; a zero may be written with any
+    decimals -= std::clamp(exponent, -kExponents, kExponents);
   }
   return std::max(decimals, 0);
 }
@@ -160,10 +161,11 @@ std::vector<std::string> RangeValues(const YamlNode& range, const std::string& k
   std::vector<std::string> values;
   for (int i = 0; i < static_cast<int>(count); ++i) {
     const double value = first + i * step;
-    std::string text =
+    const std::string text =
         decimals > kDecimalsOfDouble ? fmt::format("{}", value) : fmt::format("{:.{}f}", value, decimals);
+    // Rounding can leave "-0.0", which is another value than 0.
     const bool is_zero = text.find_first_of("123456789") == std::string::npos;
-    values.push_back(is_zero ? "0" : std::move(text));  // not "-0.0", which rounding can leave
+    values.push_back(is_zero ? std::string("0") : text);
   }
   return values;
 }

@@ -3,17 +3,20 @@
 //   # Does the threshold pay?                the first line's comment is the study's question
 //   name: thresholds                         of the study and of its results
 //   base: paper_base.yaml                    optional: another sweep file, merged underneath
-//   missions: 850                            per arm; in a stage, or here for all stages that fly
+//   missions: 850                            per arm
 //   seed: 20260101                           64 bits; 0 when nobody says
-//   set: {mission.world: worlds/ridges.yaml} fixed values; `ed3r params` lists the keys; nested maps work too
-//   sweep:                                   axes, see axis.h; `strategy` is short for mission.strategy
+//   set: {robot.speed_mps: 4}                fixed values; `ed3r params` lists the keys; nested maps work,
+//   too sweep:                                   axes, see axis.h; `strategy` is short for mission.strategy
 //     strategy: [rbs, ed3r]
 //     agents.eta_min: [0.65, 0.75, 0.85]
 //   where: [strategy == ed3r or agents.eta_min == 0.75]      all must hold, see condition.h
-//   stages:                                  optional; without it there is one, "online", with all of the above
+//
+// Without stages there is one, "online", with all of the above. Stages that build on one another:
+//
+//   stages:
 //     - {name: warmup, missions: 2040, set: {strategy: random}}
-//     - {name: training, kind: train, after: warmup}
-//     - {name: online, after: [training]}
+//     - {name: training, kind: train, after: warmup, sweep: {agents.eta_min: [0.65, 0.75]}}
+//     - {name: online, after: [training], set: {strategy: ed3r}, sweep: {agents.eta_min: [0.65, 0.75]}}
 //
 // A stage's set, sweep and where add to those of the top level; its values win over those of the top level's
 // set. Merging of base files: sweep_source.h. Names of arms: arm_name.h. World files are relative to the file

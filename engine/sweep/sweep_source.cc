@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <system_error>
 
 #include "engine/core/suggest.h"
@@ -95,7 +96,7 @@ void MergeUnder(SweepSource& source, SweepSource base) {
 
 class SourceReader {
  public:
-  SourceReader(std::string top_file, const ValueCheck& check)
+  SourceReader(const std::string& top_file, const ValueCheck& check)
       : top_folder_(FolderOf(top_file)), check_(check) {}
 
   SweepSource Read(const std::string& file, bool keep_absolute) {

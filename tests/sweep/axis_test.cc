@@ -38,6 +38,7 @@ TEST(RangeTest, ValuesHaveTheWrittenDecimals) {
   EXPECT_EQ(Range({"15e6", "30e6", "7.5e6"}), (Values{"15000000", "22500000", "30000000"}));
   EXPECT_EQ(Range({"0.125", "0.625", "0.25"}), (Values{"0.125", "0.375", "0.625"}));
   EXPECT_EQ(Range({"1e-25", "2e-25", "1e-25"}), (Values{"1e-25", "2e-25"}));
+  EXPECT_EQ(Range({"0e-2147483648", "1", "1"}), (Values{"0", "1"}));
 }
 
 TEST(RangeTest, MayDescendAndPassZero) {

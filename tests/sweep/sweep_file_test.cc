@@ -144,6 +144,29 @@ TEST(SweepFileTest, BaseFilesLieUnderneath) {
   EXPECT_EQ(plan.stages[0].arms[0].config.robot.speed_mps, 3.0);
 }
 
+// The examples that the header shows.
+TEST(SweepFileTest, DocumentedExamplesLoad) {
+  const ScratchFolder scratch;
+  scratch.Write("paper_base.yaml", "set: {robot.speed_mps: 5}\n");
+  const SweepPlan single = LoadSweep(scratch.Write("a.yaml",
+                                                   "# Does the threshold pay?\n"
+                                                   "name: thresholds\nbase: paper_base.yaml\nmissions: 850\n"
+                                                   "seed: 20260101\nset: {robot.speed_mps: 4}\nsweep:\n"
+                                                   "  strategy: [rbs, ed3r]\n"
+                                                   "  agents.eta_min: [0.65, 0.75, 0.85]\n"
+                                                   "where: [strategy == ed3r or agents.eta_min == 0.75]\n"));
+  EXPECT_EQ(ArmNames(single.stages[0]), (Names{"rbs,eta_min=0.75", "ed3r-65", "ed3r-75", "ed3r-85"}));
+  const SweepPlan staged = LoadSweep(scratch.Write(
+      "b.yaml",
+      "name: staged\nmissions: 850\nstages:\n"
+      "  - {name: warmup, missions: 2040, set: {strategy: random}}\n"
+      "  - {name: training, kind: train, after: warmup, sweep: {agents.eta_min: [0.65, 0.75]}}\n"
+      "  - {name: online, after: [training], set: {strategy: ed3r}, sweep: {agents.eta_min: [0.65, "
+      "0.75]}}\n"));
+  EXPECT_EQ(ArmNames(staged.stages[1]), (Names{"training,eta_min=0.65", "training,eta_min=0.75"}));
+  EXPECT_EQ(ArmNames(staged.stages[2]), (Names{"ed3r-65", "ed3r-75"}));
+}
+
 TEST(SweepFileTest, ShippedSweepsLoad) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(ED3R_SOURCE_DIR "/sweeps")) {
