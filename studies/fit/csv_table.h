@@ -1,0 +1,60 @@
+// A strict reader for numeric CSV files: every complaint names file, line, character column and column name.
+//
+// Own code because Debian's CSV libraries do not fit: libcsv reports no positions, fast-cpp-csv-parser fixes
+// the columns at compile time, GDAL's driver repairs what should be refused. Numbers are read by
+// std::from_chars. RFC 4180 without quoted line breaks; a byte-order mark, CRLF and blank lines at the end
+// are accepted.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ed3r {
+
+// Immutable once read; share it between threads freely.
+class CsvTable {
+ public:
+  // Throws UserError: unreadable or empty file, a repeated or empty column name, a row with another number of
+  // cells.
+  static CsvTable Read(const std::string& path);
+  // The same from text; `path` only names it in messages.
+  static CsvTable Parse(std::string path, std::string text);
+
+  CsvTable(CsvTable&&) = default;
+
+  const std::string& path() const { return path_; }
+  const std::vector<std::string>& columns() const { return columns_; }
+  std::size_t rows() const { return row_line_.size(); }
+  int Line(std::size_t row) const { return row_line_[row]; }
+
+  // Index of a column. Throws UserError with the columns there are and the nearest name; `what` says what the
+  // column is for.
+  std::size_t Column(std::string_view name, std::string_view what) const;
+
+  std::string_view Cell(std::size_t row, std::size_t column) const;
+  // Throws UserError unless the cell is one finite number within [min, max].
+  double Number(std::size_t row, std::size_t column, double min, double max) const;
+
+  // "path:line:character: column: " for complaints about one cell.
+  std::string Where(std::size_t row, std::size_t column) const;
+
+ private:
+  struct Span {
+    std::size_t begin, end;
+  };
+
+  CsvTable() = default;
+  void ReadHeader(std::string_view line);
+  void ReadRow(std::size_t begin, std::string_view line, int number);
+
+  std::string path_;
+  std::string text_;
+  std::vector<std::string> columns_;
+  std::vector<Span> cells_;  // rows x columns, into text_
+  std::vector<std::size_t> row_begin_;
+  std::vector<int> row_line_;
+};
+
+}  // namespace ed3r

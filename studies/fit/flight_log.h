@@ -1,0 +1,64 @@
+// Flight telemetry, read and checked: what the estimation sees.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/fit/csv_table.h"
+#include "studies/fit/log_format.h"
+
+namespace ed3r {
+
+// Why a row does not count for energies: single samples that no multirotor in flight can draw.
+enum class RowQuality : unsigned char { kGood, kDropOut, kSpike };
+
+struct FlightRow {
+  double time_s = 0.0;
+  double power_w = 0.0;
+  double airspeed_mps = 0.0;  // horizontal
+  double climb_mps = 0.0;     // up positive
+  double density_kgm3 = 0.0;
+  double mass_kg = 0.0;
+  RowQuality quality = RowQuality::kGood;
+};
+
+// Rows in strictly increasing time.
+struct Flight {
+  std::string id;  // "file" or "file#flight"
+  std::vector<FlightRow> rows;
+
+  double MassKg() const { return rows.front().mass_kg; }
+};
+
+struct FlightLog {
+  std::vector<std::string> files;
+  LogFormat format;
+  std::vector<Flight> flights;
+  int rows = 0;
+  int rows_on_ground = 0;  // not in flight (LogFormat::in_flight)
+  int drop_outs = 0;       // power below 1/4 of the flight's median
+  int spikes = 0;          // power above twice the flight's median
+  int short_flights = 0;   // flights of fewer than kMinFlightRows rows, left out
+  int hover_rows = 0;
+  // Mean over flights of |climb integrated from the recorded climb rate - climb by altitude|, where a log has
+  // both: metres that the recorded climb rate drifts in a flight. NaN where it has not.
+  double climb_drift_m = 0.0;
+};
+
+inline constexpr int kMinFlightRows = 20;
+inline constexpr int kMinLogRows = 200;
+inline constexpr int kMinHoverRows = 20;
+
+// Reads the files as one log. Throws UserError naming file, line and column: a column that is missing, text
+// in a number, values out of range, time that does not increase, flights that are not contiguous, too few
+// rows, no hovering.
+FlightLog ReadFlightLog(const std::vector<std::string>& paths, const LogFormat& format);
+// The same from tables in memory.
+FlightLog MakeFlightLog(const std::vector<CsvTable>& tables, const LogFormat& format);
+
+bool IsHover(const FlightRow& row, const LogFormat& format);
+
+// Seconds between neighbouring rows above which nothing is integrated.
+inline constexpr double kMaxGapS = 2.0;
+
+}  // namespace ed3r

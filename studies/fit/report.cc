@@ -1,0 +1,213 @@
+#include "studies/fit/report.h"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+const char* UnitsOf(const FitReport& report) { return report.segments ? "segments" : "flights"; }
+
+const char* BoundOf(const Estimate& estimate, std::size_t i) {
+  return estimate.at_lower[i] ? "lower" : estimate.at_upper[i] ? "upper" : "";
+}
+
+std::string IntervalText(const Interval& interval) {
+  return std::isnan(interval.low) ? "-" : fmt::format("{:.4g} .. {:.4g}", interval.low, interval.high);
+}
+
+void PrintLog(const FitReport& report, std::ostream& out) {
+  const FlightLog& log = report.log;
+  fmt::print(out, "Log       {} ({})\n", fmt::join(log.files, ", "), log.format.name);
+  fmt::print(out, "          {} flights, {} rows in flight, {} hovering; {} drop-outs, {} spikes\n",
+             log.flights.size(), log.rows, log.hover_rows, log.drop_outs, log.spikes);
+  if (log.rows_on_ground > 0)
+    fmt::print(out, "          {} rows on the ground left out\n", log.rows_on_ground);
+  if (log.short_flights > 0)
+    fmt::print(out, "          {} flights of fewer than {} rows left out\n", log.short_flights,
+               kMinFlightRows);
+  if (!std::isnan(log.climb_drift_m))
+    fmt::print(
+        out, "          recorded climb rate and altitude part by {:.1f} m a flight on average; {} is used\n",
+        log.climb_drift_m, log.format.climb_from == ClimbFrom::kAltitude ? "altitude" : "the climb rate");
+  for (const std::string& note : log.format.notes) fmt::print(out, "          note: {}\n", note);
+  if (report.segments)
+    fmt::print(out, "          fewer than {} flights: segments of {:g} s stand for flights\n", kMinGroups,
+               kSegmentS);
+}
+
+void PrintErrors(const FitReport& report, std::ostream& out, bool evaluated) {
+  if (evaluated)
+    fmt::print(out, "\nEnergy per flight of {}, never seen by the fit ({} flights)\n",
+               fmt::join(report.evaluate_log->files, ", "), report.evaluate_log->flights.size());
+  else
+    fmt::print(out, "\nEnergy of held-out {} ({} folds)\n", UnitsOf(report),
+               std::min(kFolds, report.groups.size()));
+  fmt::print(out, "  {:<18} {:>9} {:>9} {:>9} {:>9} {:>11}\n", "model", "median %", "p90 %", "max %",
+             "bias %", "row rms W");
+  for (const ModelReport& model : report.models) {
+    const Assessment& a = evaluated ? *model.evaluated : model.held_out;
+    fmt::print(out, "  {:<18} {:>9.2f} {:>9.2f} {:>9.2f} {:>+9.2f} {:>11.1f}{}\n", model.name,
+               a.median_error_pct, a.p90_error_pct, a.max_error_pct, a.mean_error_pct, a.rms_residual_w,
+               !evaluated && &model == &report.models[report.best] ? "  <- smallest" : "");
+  }
+}
+
+void PrintParameters(const FitReport& report, std::ostream& out) {
+  fmt::print(out, "\nParameters, 95 % intervals\n  {:<16} {:>10}  {:<22} {:<22} {}\n", "", "value",
+             report.segments ? "by segments" : "by flights", "as if rows independent", "bounds");
+  for (const ModelReport& model : report.models) {
+    const Estimate& e = model.estimate;
+    fmt::print(out, "  {}: {}; {} loss, noise {:.1f} W, {} + {} rows beyond, {} of {} starts agree\n",
+               model.name, model.meaning, e.loss == Loss::kTukey ? "Tukey" : "Huber", e.scale_w, e.beyond_low,
+               e.beyond_high, e.starts_agreeing, e.starts);
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+      const ParameterSpec& spec = model.parameters[i];
+      const std::string bound = BoundOf(e, i);
+      fmt::print(out, "  {:<16} {:>10.4g}  {:<22} {:<22} {:g} .. {:g}{}{}\n", spec.name, e.values[i],
+                 IntervalText(model.uncertainty.flights[i]), IntervalText(model.uncertainty.rows[i]),
+                 spec.lower, spec.upper, spec.unit.empty() ? "" : " " + spec.unit,
+                 bound.empty() ? "" : fmt::format("  AT ITS {} BOUND", bound == "lower" ? "LOWER" : "UPPER"));
+    }
+    if (!model.uncertainty.determined) fmt::print(out, "  (the data do not determine the free parameters)\n");
+  }
+  fmt::print(out,
+             "  Intervals by {}: any correlation within one is allowed for (wind, gusts, battery); they "
+             "claim what would\n"
+             "  happen with other {} like these, not that the model is right.\n",
+             UnitsOf(report), UnitsOf(report));
+}
+
+void PrintHover(const FitReport& report, std::ostream& out) {
+  fmt::print(out, "\nHover power on held-out {}\n  {:>8} {:>6} {:>11}", UnitsOf(report), "mass kg", "rows",
+             "measured W");
+  for (const ModelReport& model : report.models) fmt::print(out, " {:>20}", model.name + " %");
+  fmt::print(out, "\n");
+  for (std::size_t k = 0; k < report.models.front().held_out.hover.size(); ++k) {
+    const HoverPower& hover = report.models.front().held_out.hover[k];
+    fmt::print(out, "  {:>8.2f} {:>6} {:>11.1f}", hover.mass_kg, hover.rows, hover.measured_w);
+    for (const ModelReport& model : report.models)
+      fmt::print(out, " {:>+20.2f}", model.held_out.hover[k].ErrorPct());
+    fmt::print(out, "\n");
+  }
+  if (!std::isnan(report.scaling.exponent))
+    fmt::print(out, "  P_hover ~ m^{:.2f} (95 % {:.2f} .. {:.2f}, {} flights; theory 1.5)\n",
+               report.scaling.exponent, report.scaling.low, report.scaling.high,
+               report.scaling.points.size());
+}
+
+void Save(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw UserError(fmt::format("{}: cannot be written", path.string()));
+}
+
+std::string FlightsCsv(const FitReport& report) {
+  std::string csv = "set,flight,mass_kg,duration_s,measured_j";
+  for (const ModelReport& model : report.models) csv += "," + model.name + "_j";
+  csv += "\n";
+  for (const bool evaluated : {false, true}) {
+    if (evaluated && !report.evaluate_log) break;
+    const auto flights = [&](const ModelReport& m) -> const std::vector<FlightEnergy>& {
+      return evaluated ? m.evaluated->flights : m.held_out.flights;
+    };
+    for (std::size_t f = 0; f < flights(report.models.front()).size(); ++f) {
+      const FlightEnergy& first = flights(report.models.front())[f];
+      csv += fmt::format("{},{},{:g},{:.2f},{:.1f}", evaluated ? "evaluated" : "held-out", first.id,
+                         first.mass_kg, first.duration_s, first.measured_j);
+      for (const ModelReport& model : report.models)
+        csv += fmt::format(",{:.1f}", flights(model)[f].predicted_j);
+      csv += "\n";
+    }
+  }
+  return csv;
+}
+
+std::string RowsCsv(const FitReport& report) {
+  std::string csv = "flight,time_s,airspeed_mps,climb_mps,mass_kg,density_kgm3,power_w,good";
+  for (const ModelReport& model : report.models) csv += "," + model.name + "_w";
+  csv += "\n";
+  auto out = std::back_inserter(csv);
+  for (std::size_t f = 0; f < report.groups.size(); ++f) {
+    for (std::size_t i = 0; i < report.groups[f].rows.size(); ++i) {
+      const FlightRow& row = report.groups[f].rows[i];
+      fmt::format_to(out, "{},{:.2f},{:.2f},{:.3f},{:g},{:g},{:.2f},{}", report.groups[f].id, row.time_s,
+                     row.airspeed_mps, row.climb_mps, row.mass_kg, row.density_kgm3, row.power_w,
+                     row.quality == RowQuality::kGood ? 1 : 0);
+      for (const ModelReport& model : report.models) fmt::format_to(out, ",{:.1f}", model.held_out_w[f][i]);
+      csv += "\n";
+    }
+  }
+  return csv;
+}
+
+}  // namespace
+
+void PrintReport(const FitReport& report, std::ostream& out) {
+  PrintLog(report, out);
+  PrintErrors(report, out, false);
+  if (report.evaluate_log) PrintErrors(report, out, true);
+  PrintParameters(report, out);
+  PrintHover(report, out);
+}
+
+std::string FittedYaml(const FitReport& report) {
+  const RobotConfig& robot = report.log.format.robot;
+  std::string text =
+      fmt::format("# Airframe and energy parameters fitted to {} ({} flights, {} rows) by 'ed3r fit'.\n",
+                  fmt::join(report.log.files, ", "), report.log.flights.size(), report.log.rows);
+  text += fmt::format("# Median energy error per held-out {}:", report.segments ? "segment" : "flight");
+  for (const ModelReport& model : report.models)
+    text += fmt::format(" {} {:.2f} %{}", model.name, model.held_out.median_error_pct,
+                        &model == &report.models.back() ? ".\n" : ",");
+  const auto entry = [](const std::string& key, double value, const std::string& comment) {
+    return fmt::format("  {}: {:.6g}{}\n", key, value, comment.empty() ? "" : "  # " + comment);
+  };
+  // The paper's model as printed and the momentum model with interference are what the engine flies.
+  std::string robot_text, energy_text;
+  for (const ModelReport& model : report.models) {
+    if (model.name != "paper" && model.name != "momentum") continue;
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+      const std::string& key = model.parameters[i].key;
+      const bool of_robot = key.starts_with("robot.");
+      const std::string bound = BoundOf(model.estimate, i);
+      const std::string comment = model.name + ", " +
+                                  (bound.empty() ? "95 %: " + IntervalText(model.uncertainty.flights[i])
+                                                 : "at its " + bound + " bound");
+      (of_robot ? robot_text : energy_text) +=
+          entry(key.substr(key.find('.') + 1), model.estimate.values[i], comment);
+    }
+  }
+  text += "robot:\n" + entry("mass_kg", robot.mass_kg, "without payload") +
+          entry("propellers", robot.propellers, "") +
+          entry("propeller_radius_m", robot.propeller_radius_m, "") + entry("height_m", robot.height_m, "") +
+          entry("width_m", robot.width_m, "") + entry("depth_m", robot.depth_m, "") +
+          entry("battery_mah", robot.battery_mah, "") + entry("battery_v", robot.battery_v, "") + robot_text;
+  const bool paper = report.models[report.best].name.starts_with("paper");
+  return text + "energy:\n" + fmt::format("  model: {}\n", paper ? "paper" : "momentum") + energy_text;
+}
+
+void WriteFitOutputs(const FitReport& report, const std::string& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw UserError(fmt::format("{}: {}", directory, error.message()));
+  const std::filesystem::path path(directory);
+  std::ostringstream text;
+  PrintReport(report, text);
+  Save(path / "report.txt", text.str());
+  Save(path / "fit.json", ToJson(report).dump(1) + "\n");
+  Save(path / "fitted.yaml", FittedYaml(report));
+  Save(path / "flights.csv", FlightsCsv(report));
+  Save(path / "rows.csv", RowsCsv(report));
+}
+
+}  // namespace ed3r

@@ -1,0 +1,233 @@
+// The program as its users meet it: the same results however a sweep is flown, and what happens when things go wrong.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/app/command.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kSweeps = ED3R_SOURCE_DIR "/sweeps/";
+
+std::string Digest(const fs::path& dir) {
+  const CommandResult result = Ed3r("digest " + dir.string());
+  EXPECT_EQ(result.status, 0) << result.err;
+  return result.out;
+}
+
+// Flies a shipped sweep and returns its digest.
+std::string Fly(const std::string& sweep, const std::string& arguments, const fs::path& dir,
+                const std::string& environment = "") {
+  const CommandResult result =
+      Ed3r(fmt::format("run {}{} {} --quiet --out {}", kSweeps, sweep, arguments, dir.string()), environment);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  return Digest(dir);
+}
+
+std::int64_t DoneMissions(const fs::path& dir) {
+  const CommandResult result = Ed3r("status --json " + dir.string());
+  if (result.status != 0) return 0;  // not there yet
+  std::int64_t done = 0;
+  for (const auto& arm : nlohmann::json::parse(result.out).at("arms"))
+    done += arm.at("done").get<std::int64_t>();
+  return done;
+}
+
+// Starts `ed3r run`, waits until some missions are stored, sends a signal; returns the wait status.
+int RunAndSignal(const std::string& sweep, const std::string& missions, const fs::path& dir, int signal,
+                 std::int64_t after_missions) {
+  const std::string file = kSweeps + sweep;
+  const std::string out = dir.string();
+  const pid_t child = fork();
+  if (child == 0) {
+    execl(ED3R_BINARY, ED3R_BINARY, "run", file.c_str(), "--missions", missions.c_str(), "--quiet", "--out",
+          out.c_str(), nullptr);
+    _exit(127);
+  }
+  // Waits for an event, not for a time: the deadline only ends a test that is broken anyway.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+  while (DoneMissions(dir) < after_missions && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  kill(child, signal);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+TEST(RunTest, ThreadsShardsAndSimdLevelsDoNotShow) {
+  const ScratchFolder scratch;
+  const std::string one = Fly("rbs.yaml", "--missions 30 --threads 1", scratch / "one");
+  EXPECT_EQ(Fly("rbs.yaml", "--missions 30 --threads 2", scratch / "two"), one);
+  EXPECT_EQ(Fly("rbs.yaml", "--missions 30", scratch / "scalar", "ED3R_SIMD=scalar"), one);
+  for (const char* shard : {"3/3", "1/3", "2/3"})
+    Fly("rbs.yaml", fmt::format("--missions 30 --shard {}", shard),
+        scratch / fmt::format("shard{}", shard[0]));
+  const std::string merge =
+      fmt::format("merge {} {} {} {}", (scratch / "merged").string(), (scratch / "shard2").string(),
+                  (scratch / "shard3").string(), (scratch / "shard1").string());
+  ASSERT_EQ(Ed3r(merge).status, 0);
+  EXPECT_EQ(Digest(scratch / "merged"), one);
+  EXPECT_NE(Fly("rbs.yaml", "--missions 30 --seed 1", scratch / "seed"), one);
+}
+
+TEST(RunTest, AKillLosesLittleAndTheSameCommandContinues) {
+  const ScratchFolder scratch;
+  const std::string whole = Fly("rbs.yaml", "--missions 250", scratch / "whole");
+  const int status = RunAndSignal("rbs.yaml", "250", scratch / "killed", SIGKILL, 20);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "it ended before the kill";
+  const std::int64_t before = DoneMissions(scratch / "killed");
+  EXPECT_GE(before, 20);
+  EXPECT_LT(before, 250);
+  EXPECT_EQ(Fly("rbs.yaml", "--missions 250", scratch / "killed"), whole);
+}
+
+TEST(RunTest, CtrlCKeepsWhatIsStoredAndExitsWith130) {
+  const ScratchFolder scratch;
+  const int status = RunAndSignal("rbs.yaml", "2000", scratch / "run", SIGINT, 10);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_GE(DoneMissions(scratch / "run"), 10);
+  EXPECT_LT(DoneMissions(scratch / "run"), 2000);
+}
+
+TEST(RunTest, ARunThatIsCompleteFliesNothingAgain) {
+  const ScratchFolder scratch;
+  Fly("rbs.yaml", "--missions 4", scratch / "run");
+  const CommandResult again =
+      Ed3r(fmt::format("run {}rbs.yaml --missions 4 --out {}", kSweeps, (scratch / "run").string()));
+  EXPECT_EQ(again.status, 0);
+  EXPECT_NE(again.out.find("4 missions stored (4 before)\n"), std::string::npos) << again.out;
+}
+
+// Warm-up, training and every strategy of the paper, at each SIMD level this CPU has and on one and two threads.
+TEST(RunTest, TheWholePaperInSmallIsTheSameAtEverySimdLevel) {
+  const ScratchFolder scratch;
+  const auto fly = [&](const std::string& name, const std::string& arguments,
+                       const std::string& environment) {
+    return Fly("smoke.yaml",
+               fmt::format("--missions 6 --set training.epochs=3 --cache {} {}",
+                           (scratch / (name + "-cache")).string(), arguments),
+               scratch / name, environment);
+  };
+  const std::string reference = fly("reference", "--threads 2", "");
+  EXPECT_EQ(fly("one-thread", "--threads 1", ""), reference);
+  const std::string levels =
+      nlohmann::json::parse(Ed3r("doctor --json").out).at("machine").at("simd_supported");
+  for (const char* level : {"scalar", "avx2", "avx512"}) {
+    if (levels.find(level) == std::string::npos) continue;
+    EXPECT_EQ(fly(level, "", fmt::format("ED3R_SIMD={}", level)), reference) << level;
+  }
+}
+
+TEST(RunTest, FailedMissionsAreRecordedAndTheSweepGoesOn) {
+  const ScratchFolder scratch;
+  const CommandResult result =
+      Ed3r(fmt::format("run {}rbs.yaml --missions 12 --set mission.max_timesteps=8 --quiet --out {}", kSweeps,
+                       (scratch / "run").string()));
+  EXPECT_EQ(result.status, 3);
+  const auto status = nlohmann::json::parse(Ed3r("status --json " + (scratch / "run").string()).out);
+  const std::int64_t done = status["arms"][0]["done"], failed = status["arms"][0]["failed"];
+  EXPECT_EQ(done + failed, 12);
+  EXPECT_GT(done, 0);
+  EXPECT_GT(failed, 0);
+  EXPECT_NE(status["failures"][0]["message"].get<std::string>().find("the mission does not end"),
+            std::string::npos);
+  EXPECT_EQ(status["failures"][0]["seed"], 20260101);
+}
+
+TEST(RunTest, AnotherSweepInTheSameFolderIsRefused) {
+  const ScratchFolder scratch;
+  Fly("rbs.yaml", "--missions 2", scratch / "run");
+  const std::string digest = Digest(scratch / "run");
+  const CommandResult other =
+      Ed3r(fmt::format("run {}rbs.yaml --missions 2 --seed 3 --out {}", kSweeps, (scratch / "run").string()));
+  EXPECT_EQ(other.status, 2);
+  EXPECT_EQ(std::count(other.err.begin(), other.err.end(), '\n'), 1) << other.err;
+  EXPECT_EQ(Digest(scratch / "run"), digest);
+}
+
+TEST(RunTest, BadInputWritesNothing) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "run").string();
+  const std::pair<std::string, std::string> cases[] = {
+      {"--set robot.mass_kg=-1",
+       "--set robot.mass_kg=-1: robot.mass_kg: '-1' is not allowed; allowed: 0.05 .. 50 kg\n"},
+      {"--set mission.strategy=rsb",
+       "--set mission.strategy=rsb: mission.strategy: 'rsb' is not allowed; allowed: random | random-offload "
+       "| rbs | ed3r | "
+       "ablation-1 | ablation-2 | ablation-3 | ablation-4 | ecd2r; did you mean rbs?\n"},
+      {"--missions 0", "--missions: '0' is not allowed; allowed: 1 .. 10000000\n"},
+      {"--seed x", "--seed: 'x' is not allowed; allowed: 0 .. 18446744073709551615\n"},
+  };
+  for (const auto& [arguments, message] : cases) {
+    const CommandResult result = Ed3r(fmt::format("run {}rbs.yaml {} --out {}", kSweeps, arguments, out));
+    EXPECT_EQ(result.status, 2) << arguments;
+    EXPECT_EQ(result.err, message);
+    EXPECT_FALSE(fs::exists(out)) << arguments;
+  }
+  for (const char* arguments : {"--threads -1", "--shard 4/3", "--shard x", "--thread 2"}) {
+    const CommandResult result = Ed3r(fmt::format("run {}rbs.yaml {} --out {}", kSweeps, arguments, out));
+    EXPECT_EQ(result.status, 2) << arguments;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_FALSE(fs::exists(out)) << arguments;
+  }
+  EXPECT_EQ(Ed3r("run no-such.yaml --out " + out).status, 2);
+  EXPECT_EQ(Ed3r("run " + kSweeps + "rbs.yaml --out " + out, "ED3R_SIMD=sse").status, 2);
+  EXPECT_FALSE(fs::exists(out));
+}
+
+TEST(RunTest, PlanFliesNothing) {
+  const CommandResult result = Ed3r("plan --json " + kSweeps + "paper.yaml");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto plan = nlohmann::json::parse(result.out);
+  EXPECT_EQ(plan["missions"], 2 * 2040 + 9 * 850);
+  EXPECT_EQ(plan["stages"][2]["arms"][1]["name"], "ed3r-75");
+}
+
+TEST(RunTest, ReportIsJsonWithIntervals) {
+  const ScratchFolder scratch;
+  Fly("rbs.yaml", "--missions 20", scratch / "run");
+  const CommandResult result = Ed3r("report --json " + (scratch / "run").string());
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto rbs = nlohmann::json::parse(result.out).at("arms").at("rbs");
+  EXPECT_EQ(rbs["missions"], 20);
+  for (const char* metric : {"total_energy_kj",
+                             "movement_energy_kj",
+                             "computation_energy_kj",
+                             "transmission_energy_kj",
+                             "sensing_energy_kj",
+                             "mscs_pct",
+                             "msr_pct",
+                             "wer_pct",
+                             "fp_pct",
+                             "bd_pct",
+                             "or_pct",
+                             "model_full_pct",
+                             "model_quant_pct",
+                             "lf_accuracy_pct",
+                             "er_pct",
+                             "duration_mean_min",
+                             "duration_p85_min",
+                             "duration_max_min",
+                             "within_10min_pct",
+                             "timesteps_mean",
+                             "seconds_per_timestep",
+                             "mean_power_w"})
+    EXPECT_TRUE(rbs.contains(metric)) << metric;
+  EXPECT_LE(rbs["total_energy_kj"]["lo"].get<double>(), rbs["total_energy_kj"]["mean"].get<double>());
+  EXPECT_GE(rbs["total_energy_kj"]["hi"].get<double>(), rbs["total_energy_kj"]["mean"].get<double>());
+}
+
+}  // namespace
+}  // namespace ed3r
