@@ -4,6 +4,7 @@
 
 #include "engine/app/commands.h"
 #include "engine/app/machine.h"
+#include "engine/app/stored_run.h"
 #include "engine/app/sweep_arguments.h"
 #include "engine/core/interrupt.h"
 #include "engine/schedule/sweep_runner.h"
@@ -58,6 +59,7 @@ int Run(const Options& options) {
   sweep.schedule.stop = &InterruptFlag();
   sweep.schedule.quiet = options.quiet;
   sweep.notes = DescribeMachine();
+  sweep.notes.merge(NotesOf(options.sweep));
   const SweepSummary summary = RunSweep(plan, worlds, sweep);
 
   if (!options.quiet) {

@@ -65,6 +65,9 @@ class Mission {
   StepTime TimeOf(const FlownMove& move, const Arrival& arrival, Execution execution) const;
   DeviceEnergy DevicesOf(const Arrival& arrival, Execution execution) const;
   ComputationCost OnboardCost(Execution execution, double cpu_hz) const;
+  CandidateTrace* CandidatesAt(std::uint32_t k) const;
+  void Probe(std::uint32_t k, const RcView& rc_view, const MotionDecision& motion,
+             const RobotView& robot_view, const ExecutionDecision& execution);
   MissionRecord Close(Outcome outcome);
   Outcome OutcomeOfCompletion() const;
 
@@ -89,13 +92,17 @@ MissionRecord Mission::Fly() {
     if (task_.stop != nullptr && task_.stop->load(std::memory_order_relaxed)) throw Interrupted();
     ED3R_CHECK(k <= static_cast<std::uint32_t>(config_.mission.max_timesteps), "the mission does not end");
 
-    const MotionDecision motion = controller_.ChooseMotion(ControllerView(), k);  // stage 1, at the RC
+    const RcView rc_view = ControllerView();
+    const MotionDecision motion =
+        controller_.ChooseMotion(rc_view, k, CandidatesAt(k));  // stage 1, at the RC
     if (motion.complete) return Close(OutcomeOfCompletion());
     const FlownMove move = flight_.Execute(motion.command, k);
 
     const Arrival arrival = Arrive(k);
+    const RobotView robot_view = OnboardView(arrival);
     const ExecutionDecision execution =
-        robot_.ChooseExecution(OnboardView(arrival), motion.epsilon, k);  // stage 2, on board
+        robot_.ChooseExecution(robot_view, motion.epsilon, k);  // stage 2, on board
+    Probe(k, rc_view, motion, robot_view, execution);
 
     TimestepRecord step = OpenStep(k, motion, move, execution);
     RecordLink(arrival.conditions, arrival.rc_distance_m, arrival.link, step);
@@ -189,6 +196,21 @@ DeviceEnergy Mission::DevicesOf(const Arrival& arrival, Execution execution) con
   if (execution == Execution::kOffload)
     devices.transmission_j = TransmissionEnergyJ(PayloadByte(config_.sensing), arrival.link);
   return devices;
+}
+
+CandidateTrace* Mission::CandidatesAt(std::uint32_t k) const {
+  return task_.probe != nullptr && task_.probe->timestep == k ? &task_.probe->candidates : nullptr;
+}
+
+void Mission::Probe(std::uint32_t k, const RcView& rc_view, const MotionDecision& motion,
+                    const RobotView& robot_view, const ExecutionDecision& execution) {
+  if (task_.probe == nullptr || task_.probe->timestep != k) return;
+  task_.probe->reached = true;
+  task_.probe->rc_view = rc_view;
+  task_.probe->motion = motion;
+  task_.probe->robot_view = robot_view;
+  task_.probe->execution = execution;
+  task_.probe->robot_rewards = robot_.PredictAll(robot_view);
 }
 
 // A completion is false when no fire was in view at any of the detections that completed it (R16).

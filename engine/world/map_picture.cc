@@ -32,8 +32,8 @@ const cv::Scalar kWhite(255, 255, 255);
 
 class MapPicture {
  public:
-  MapPicture(const Scene& scene, int width_px)
-      : scene_(scene), scale_(kOversampling * width_px / kDesignWidth) {
+  MapPicture(const Scene& scene, const MapOverlay& overlay, int width_px)
+      : scene_(scene), overlay_(overlay), scale_(kOversampling * width_px / kDesignWidth) {
     map_width_ = kDesignWidth - kLeft - kGap - kLegend - kRight;
     px_per_m_ = map_width_ / scene.SizeM().x();
     map_height_ = px_per_m_ * scene.SizeM().y();
@@ -52,9 +52,11 @@ class MapPicture {
     for (const BaseStation& station : scene_.BaseStations())
       DrawStation(OnMap(station.antenna_m.x(), station.antenna_m.y()), station.known, station.name);
     for (std::size_t i = 0; i < scene_.Sites().size(); ++i) {
+      if (overlay_.site >= 0 && overlay_.site != static_cast<int>(i)) continue;
       const FireSite& site = scene_.Sites()[i];
       DrawSite(OnMap(site.base_m.x(), site.base_m.y()), site.known, fmt::format("{}", i + 1));
     }
+    DrawPath();
     cv::rectangle(canvas_, frame, kInk, Px(1.2), cv::LINE_AA);
     DrawAxes();
     DrawScaleBar();
@@ -86,6 +88,21 @@ class MapPicture {
   void Disc(const cv::Point2d& centre, double radius, const cv::Scalar& colour, double thickness = -1.0) {
     cv::circle(canvas_, At(centre.x, centre.y), Px(radius), colour,
                thickness < 0 ? cv::FILLED : Px(thickness), cv::LINE_AA);
+  }
+
+  // The flown path with a dot per timestep; the end is ringed.
+  void DrawPath() {
+    const cv::Scalar halo(255, 255, 255), ink(160, 40, 120);
+    std::vector<cv::Point2d> points;
+    for (const Eigen::Vector3d& p : overlay_.path_m) points.push_back(OnMap(p.x(), p.y()));
+    for (const auto& [colour, width] : {std::pair{halo, 5.0}, std::pair{ink, 2.4}})
+      for (std::size_t i = 1; i < points.size(); ++i)
+        cv::line(canvas_, At(points[i - 1].x, points[i - 1].y), At(points[i].x, points[i].y), colour,
+                 Px(width), cv::LINE_AA);
+    for (const cv::Point2d& point : points) Disc(point, 3.4, ink);
+    if (points.empty()) return;
+    Disc(points.back(), 9, halo, 4.5);
+    Disc(points.back(), 9, ink, 2.2);
   }
 
   void DrawTitle() {
@@ -264,6 +281,7 @@ class MapPicture {
   }
 
   const Scene& scene_;
+  const MapOverlay& overlay_;
   double scale_;
   double map_width_ = 0.0, map_height_ = 0.0, height_ = 0.0, px_per_m_ = 0.0;
   double highest_m_ = 1.0;
@@ -272,9 +290,9 @@ class MapPicture {
 
 }  // namespace
 
-void WriteMapPicture(const Scene& scene, const std::string& path, int width_px) {
+void WriteMapPicture(const Scene& scene, const std::string& path, const MapOverlay& overlay, int width_px) {
   ED3R_CHECK(width_px >= 200 && width_px <= 8000, fmt::format("width {} px", width_px));
-  const cv::Mat picture = MapPicture(scene, width_px).Draw();
+  const cv::Mat picture = MapPicture(scene, overlay, width_px).Draw();
   bool written = false;
   std::string reason = "is the folder there and writable?";
   try {

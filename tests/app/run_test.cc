@@ -39,8 +39,8 @@ std::int64_t DoneMissions(const fs::path& dir) {
   const CommandResult result = Ed3r("status --json " + dir.string());
   if (result.status != 0) return 0;  // not there yet
   std::int64_t done = 0;
-  for (const auto& arm : nlohmann::json::parse(result.out).at("arms"))
-    done += arm.at("done").get<std::int64_t>();
+  const auto status = nlohmann::json::parse(result.out);
+  for (const auto& arm : status.at("arms")) done += arm.at("done").get<std::int64_t>();
   return done;
 }
 

@@ -46,7 +46,8 @@ TEST(LinkTest, TransmissionOfOneSensingPeriod) {
   const Link link = EvaluateLink(RadioConfig(), 400.0, 22.5e6, 0.0);
   const double payload_byte = 33 * 519000.0;
   EXPECT_NEAR(TransmissionTimeS(payload_byte, link), 50.7, 0.05);  // the floor rate (A29)
-  EXPECT_NEAR(TransmissionEnergyJ(payload_byte, link), std::pow(10.0, 0.3) * TransmissionTimeS(payload_byte, link), 1e-9);
+  EXPECT_NEAR(TransmissionEnergyJ(payload_byte, link),
+              std::pow(10.0, 0.3) * TransmissionTimeS(payload_byte, link), 1e-9);
 }
 
 }  // namespace

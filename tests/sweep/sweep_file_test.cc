@@ -178,7 +178,13 @@ TEST(SweepFileTest, ShippedSweepsLoad) {
   }
   EXPECT_GE(files, 3);
   const SweepPlan smoke = LoadSweep(ED3R_SOURCE_DIR "/sweeps/smoke.yaml");
-  EXPECT_EQ(ArmNames(smoke.stages[0]), (Names{"warmup", "rbs"}));
+  EXPECT_EQ(ArmNames(smoke.stages[0]), (Names{"warmup", "warmup-ecd2r"}));
+  const Names paper = {"ed3r-65",    "ed3r-75",    "ed3r-85", "ablation-1", "ablation-2",
+                       "ablation-3", "ablation-4", "ecd2r",   "rbs"};
+  EXPECT_EQ(ArmNames(smoke.stages[2]), paper);
+  const SweepPlan whole = LoadSweep(ED3R_SOURCE_DIR "/sweeps/paper.yaml");
+  EXPECT_EQ(ArmNames(whole.stages[2]), paper);
+  EXPECT_EQ(whole.Missions(), 2 * 2040 + 9 * 850);
   EXPECT_EQ(LoadSweep(ED3R_SOURCE_DIR "/sweeps/rbs.yaml").Missions(), 850);
   const SweepPlan warmup = LoadSweep(ED3R_SOURCE_DIR "/sweeps/warmup.yaml");
   EXPECT_EQ(warmup.Missions(), 2040);

@@ -67,13 +67,13 @@ TEST(MapPicture, DrawsTrees) {
 
 TEST(MapPicture, IsAsWideAsAskedAndHandlesJpeg) {
   const TestFolder folder;
-  WriteMapPicture(Scene(Slope()), folder.Path("map.jpg"), 400);
+  WriteMapPicture(Scene(Slope()), folder.Path("map.jpg"), {}, 400);
   EXPECT_EQ(cv::imread(folder.Path("map.jpg")).cols, 400);
 }
 
 std::string Refusal(const std::string& path) {
   try {
-    WriteMapPicture(Scene(Slope()), path, 400);
+    WriteMapPicture(Scene(Slope()), path, {}, 400);
   } catch (const UserError& error) {
     return error.what();
   }

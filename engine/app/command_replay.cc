@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "engine/app/commands.h"
+#include "engine/app/stored_run.h"
+#include "engine/core/check.h"
+#include "engine/store/digest.h"
+#include "engine/world/map_picture.h"
+
+namespace ed3r {
+namespace {
+
+struct Options {
+  std::string dir, mission, out;
+  std::string cache = "results/cache";
+};
+
+class TraceFile : public TraceSink {
+ public:
+  explicit TraceFile(const std::filesystem::path& path) : file_(path) {
+    if (!file_) throw UserError(path.string() + ": cannot be written");
+    file_ << "timestep,time_s,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps,yaw_rad\n";
+  }
+  void Record(const TraceSample& s) override {
+    file_ << fmt::format("{},{},{},{},{},{},{},{},{}\n", s.timestep, s.time_s, s.position_m.x(),
+                         s.position_m.y(), s.position_m.z(), s.velocity_mps.x(), s.velocity_mps.y(),
+                         s.velocity_mps.z(), s.yaw_rad);
+  }
+
+ private:
+  std::ofstream file_;
+};
+
+void WriteSteps(const MissionRecord& record, const std::filesystem::path& path) {
+  std::ofstream file(path);
+  std::string separator;
+  TimestepRecord::Describe(TimestepRecord(), [&](std::string_view name, const auto&) {
+    file << separator << name;
+    separator = ",";
+  });
+  for (const TimestepRecord& step : record.steps) {
+    separator = "\n";
+    TimestepRecord::Describe(step, [&](std::string_view, const auto& value) {
+      file << separator << fmt::format("{}", value);
+      separator = ",";
+    });
+  }
+  file << "\n";
+}
+
+int Replay(const Options& options) {
+  StoredRun run(options.dir, options.cache);
+  const RunId id = run.Find(options.mission);
+  const StoredMission stored = run.Reader().LoadMission(id);
+  std::string name = options.mission;
+  for (char& c : name)
+    if (c == '/') c = '-';
+  const std::filesystem::path out = options.out.empty() ? std::filesystem::path(options.dir) / "replay" / name
+                                                        : std::filesystem::path(options.out);
+  std::filesystem::create_directories(out);
+
+  TraceFile trace(out / "trace.csv");
+  MissionTask task = run.Task(id);
+  task.trace = &trace;
+  const MissionRecord flown = FlyMission(task);
+  const bool identical = DigestOf(flown) == DigestOf(stored.record);
+  WriteSteps(flown, out / "timesteps.csv");
+  std::vector<Eigen::Vector3d> path_m = {{flown.start_x_m, flown.start_y_m, flown.start_z_m}};
+  for (const TimestepRecord& step : flown.steps) path_m.emplace_back(step.x_m, step.y_m, step.z_m);
+  WriteMapPicture(task.scene, (out / "map.png").string(),
+                  {.path_m = path_m, .site = static_cast<int>(flown.site)});
+  fmt::print("{}: {} in {} timesteps, {:.1f} s, {:.2f} kJ; {}\n", options.mission,
+             NameOf(static_cast<Outcome>(flown.outcome)), flown.timesteps, flown.duration_s,
+             flown.total_j / 1000.0,
+             identical ? "identical to the stored record" : "DIFFERS from the stored record");
+  fmt::print("{}: trace.csv, timesteps.csv, map.png\n", out.string());
+  return identical ? kDone : kFailedInside;
+}
+
+}  // namespace
+
+Command AddReplay(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* parser = program.add_subcommand(
+      "replay", "Flies a stored mission again, checks that it is identical, writes its trace and map");
+  parser->add_option("DIR", options->dir, "Run directory")->required();
+  parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. rbs/12")->required();
+  parser->add_option("--out", options->out, "Folder for trace and map; default DIR/replay/MISSION");
+  parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache");
+  return {parser, [options] { return Replay(*options); }};
+}
+
+}  // namespace ed3r

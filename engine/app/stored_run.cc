@@ -1,0 +1,89 @@
+#include "engine/app/stored_run.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <filesystem>
+#include <sstream>
+
+#include "engine/agents/strategy.h"
+#include "engine/core/check.h"
+#include "engine/core/version.h"
+
+namespace ed3r {
+namespace {
+
+SweepPlan ReloadPlan(ResultReader& reader) {
+  const std::vector<Session> sessions = reader.Sessions();
+  if (sessions.empty() || !sessions.back().notes.contains("sweep file"))
+    throw UserError(fmt::format("{}: no session tells which sweep file it was flown from", reader.dir()));
+  const std::map<std::string, std::string>& notes = sessions.back().notes;
+  SweepArguments arguments;
+  arguments.file = notes.at("sweep file");
+  arguments.seed = notes.at("sweep --seed");
+  arguments.missions = notes.at("sweep --missions");
+  std::istringstream settings(notes.at("sweep --set"));
+  for (std::string setting; std::getline(settings, setting);) arguments.set.push_back(setting);
+  SweepPlan plan = arguments.Load();
+  if (plan.CanonicalText() != reader.StoredRecipe().plan_text)
+    throw UserError(fmt::format("{}: {} has changed since it was flown", reader.dir(), arguments.file));
+  if (ThisCode().source_hash != reader.StoredRecipe().code_version)
+    throw UserError(
+        fmt::format("{}: flown by code {}, this is code {}; build that version to fly its missions again",
+                    reader.dir(), reader.StoredRecipe().code_version, ThisCode().source_hash));
+  return plan;
+}
+
+std::string ArmNames(const SweepPlan& plan) {
+  std::string names;
+  for (const Stage& stage : plan.stages)
+    for (const Arm& arm : stage.arms)
+      if (stage.kind == StageKind::kFly)
+        names += fmt::format("{}{}/{}", names.empty() ? "" : ", ", stage.name, arm.name);
+  return names;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> NotesOf(const SweepArguments& arguments) {
+  std::string settings;
+  for (const std::string& setting : arguments.set) settings += setting + "\n";
+  return {{"sweep file", std::filesystem::absolute(arguments.file).lexically_normal().string()},
+          {"sweep --set", settings},
+          {"sweep --seed", arguments.seed},
+          {"sweep --missions", arguments.missions}};
+}
+
+StoredRun::StoredRun(const std::string& dir, const std::string& cache_dir)
+    : reader_(dir), cache_dir_(cache_dir), plan_(ReloadPlan(reader_)), worlds_(LoadWorlds(plan_)) {}
+
+RunId StoredRun::Find(const std::string& mission) const {
+  const auto slash = mission.rfind('/');
+  const std::string arm_text = slash == std::string::npos ? "" : mission.substr(0, slash);
+  int number = -1;
+  if (slash != std::string::npos) {
+    const char* const end = mission.data() + mission.size();
+    if (std::from_chars(mission.data() + slash + 1, end, number).ptr != end) number = -1;
+  }
+  for (std::size_t s = 0; s < plan_.stages.size(); ++s) {
+    const Stage& stage = plan_.stages[s];
+    for (std::size_t a = 0; a < stage.arms.size(); ++a) {
+      const std::string& name = stage.arms[a].name;
+      if (arm_text != name && arm_text != stage.name + "/" + name) continue;
+      if (number < 0 || number >= stage.missions)
+        throw UserError(
+            fmt::format("{}: mission numbers of {} are 0 .. {}", mission, arm_text, stage.missions - 1));
+      return {static_cast<int>(s), static_cast<int>(a), number};
+    }
+  }
+  throw UserError(fmt::format("{}: expected ARM/NUMBER; the arms are {}", mission, ArmNames(plan_)));
+}
+
+MissionTask StoredRun::Task(const RunId& id) {
+  const Arm& arm = plan_.stages[static_cast<std::size_t>(id.stage)].arms[static_cast<std::size_t>(id.arm)];
+  if (networks_ == nullptr && !FindStrategy(arm.config.mission.strategy).networks.empty())
+    networks_ = TrainNetworks(plan_, {reader_.dir(), cache_dir_, ThreadsFor(0), nullptr});
+  return TaskOf(plan_, worlds_, networks_.get(), id);
+}
+
+}  // namespace ed3r
