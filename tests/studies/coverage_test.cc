@@ -197,7 +197,7 @@ TEST(CoverageTest, EightyFifthPercentile) {
   const double mean_min = 2.5;
   for (const int n : {30, 850}) {
     std::vector<double> sorted;
-    const double coverage = Coverage(4000, -mean_min * std::log(0.15), [&](Stream& stream) {
+    const double coverage = Coverage(1500, -mean_min * std::log(0.15), [&](Stream& stream) {
       sorted.clear();
       for (int i = 0; i < n; ++i) sorted.push_back(Exponential(stream, mean_min));
       std::sort(sorted.begin(), sorted.end());
