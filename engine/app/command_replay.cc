@@ -37,7 +37,8 @@ class TraceFile : public TraceSink {
 void WriteSteps(const MissionRecord& record, const std::filesystem::path& path) {
   std::ofstream file(path);
   std::string separator;
-  TimestepRecord::Describe(TimestepRecord(), [&](std::string_view name, const auto&) {
+  const TimestepRecord columns;
+  TimestepRecord::Describe(columns, [&](std::string_view name, const auto&) {
     file << separator << name;
     separator = ",";
   });

@@ -6,6 +6,7 @@
 #include "engine/app/commands.h"
 #include "engine/core/check.h"
 #include "engine/core/version.h"
+#include "kernels/simd_level.h"
 
 namespace ed3r {
 namespace {
@@ -33,6 +34,9 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
     fmt::print(stderr, "ed3r: {}; 'ed3r --help' tells more\n", error.what());
+    return kBadInput;
+  } catch (const SimdLevelError& error) {
+    fmt::print(stderr, "{}\n", error.what());
     return kBadInput;
   } catch (const UserError& error) {
     fmt::print(stderr, "{}\n", error.what());

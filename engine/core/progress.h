@@ -11,7 +11,7 @@
 namespace ed3r {
 
 struct ProgressState {
-  std::string label = "";          // what is being flown
+  std::string label = {};          // what is being flown
   std::int64_t total = 0;          // missions, those stored before included
   std::int64_t stored_before = 0;  // by earlier sessions: they count as done, not for the rate
   std::int64_t stored = 0;         // by this session

@@ -38,7 +38,6 @@ class Recorder {
 
   // True from the moment on when missions need not be flown any more.
   const std::atomic<bool>& stop() const { return stop_; }
-  void Stop() { stop_ = true; }
 
   // Ends the thread; everything offered is committed then. Throws what the store threw.
   // Fills stored, failed, simulated_s and wall_s.

@@ -7,6 +7,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/interrupt.h"
+#include "engine/schedule/parallel_for.h"
 #include "engine/schedule/recorder.h"
 #include "engine/store/records.h"
 
@@ -14,6 +15,7 @@ namespace ed3r {
 namespace {
 
 constexpr int kMostThreads = 4096;
+constexpr std::size_t kQueuedPerThread = 4;  // finished missions that may wait for the writer
 
 // Flies one mission. Nothing when it was interrupted: a record that came back after the stop may be cut
 // short, so it is not trusted.
@@ -47,33 +49,15 @@ int ThreadsFor(int asked) {
 RunSummary RunMissions(const std::vector<RunId>& todo, const FlyFn& fly, ResultStore& store,
                        const ScheduleOptions& options) {
   const int threads = ThreadsFor(options.threads);
-  // A library may have allowed OpenMP to give fewer threads on a loaded machine (OpenCV does); forbid it, and
-  // look at what was given.
-  omp_set_dynamic(0);
-  int given = 0;
-  Recorder recorder(store, options, static_cast<std::int64_t>(todo.size()),
-                    4 * static_cast<std::size_t>(threads));
   const auto missions = static_cast<std::int64_t>(todo.size());
-#pragma omp parallel num_threads(threads) default(shared)
-  {
-#pragma omp single
-    {
-      given = omp_get_num_threads();
-      if (given != threads) recorder.Stop();
-    }
-#pragma omp for schedule(dynamic, 1)
-    for (std::int64_t i = 0; i < missions; ++i) {
-      if (recorder.stop().load()) continue;
-      if (auto finished = FlyOne(fly, todo[static_cast<std::size_t>(i)], recorder.stop()))
-        recorder.Offer(std::move(*finished));
-    }
-  }
-  if (given != threads)
-    throw UserError(
-        fmt::format("OpenMP gives {} of {} threads: see OMP_THREAD_LIMIT, or ask for fewer with --threads",
-                    given, threads));
+  Recorder recorder(store, options, missions, kQueuedPerThread * static_cast<std::size_t>(threads));
+  ParallelFor(threads, missions, [&](std::int64_t i) {
+    if (recorder.stop().load()) return;
+    if (auto finished = FlyOne(fly, todo[static_cast<std::size_t>(i)], recorder.stop()))
+      recorder.Offer(std::move(*finished));
+  });
   RunSummary summary = recorder.Finish();
-  summary.threads = given;
+  summary.threads = threads;
   summary.dropped = missions - summary.stored - summary.failed;
   summary.interrupted = summary.dropped > 0 || (options.stop != nullptr && options.stop->load());
   return summary;

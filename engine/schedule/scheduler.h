@@ -32,7 +32,7 @@ struct ScheduleOptions {
   const std::atomic<bool>* stop = nullptr;  // usually &InterruptFlag()
   bool quiet = false;                       // no progress line
   std::FILE* progress = stderr;             // shown only if it is a terminal
-  std::string label = "";                   // of the progress line
+  std::string label = {};                   // of the progress line
   std::int64_t stored_before = 0;           // for the progress line: missions of `label` stored already
   std::chrono::milliseconds commit_every{500};
 };
