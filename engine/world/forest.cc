@@ -74,8 +74,10 @@ std::vector<Tree> Generate(const GeneratedForestSpec& spec, const Eigen::Vector3
   std::vector<Tree> trees;
   for (int cell = 0; cell < columns * rows; ++cell) {
     Stream stream(seed, kForestStream, Purpose::kWorld, 1 + static_cast<std::uint32_t>(cell));
-    const double x_m = (cell % columns + 0.5 + kJitter * (stream.Uniform() - 0.5)) * spec.spacing_m;
-    const double y_m = (cell / columns + 0.5 + kJitter * (stream.Uniform() - 0.5)) * spec.spacing_m;
+    const int column = cell % columns;
+    const int row = cell / columns;
+    const double x_m = (column + 0.5 + kJitter * (stream.Uniform() - 0.5)) * spec.spacing_m;
+    const double y_m = (row + 0.5 + kJitter * (stream.Uniform() - 0.5)) * spec.spacing_m;
     // The noise is roughly uniform over [-0.6, 0.6]; the draw softens the edges of clearings.
     const double openness =
         0.5 + clearings.Fractal(x_m / spec.clearing_size_m, y_m / spec.clearing_size_m, 2) / 1.2;

@@ -178,15 +178,17 @@ class MapPicture {
       return 1000.0;
     };
     const Eigen::Vector3d& size_m = scene_.SizeM();
-    for (double x = 0.0; x <= size_m.x(); x += step(size_m.x())) {
-      const cv::Point2d p = OnMap(x, 0.0);
+    for (int i = 0; i * step(size_m.x()) <= size_m.x(); ++i) {
+      const double x_m = i * step(size_m.x());
+      const cv::Point2d p = OnMap(x_m, 0.0);
       cv::line(canvas_, At(p.x, p.y), At(p.x, p.y + 6), kInk, Px(1.2), cv::LINE_AA);
-      Text(fmt::format("{:g}", x), p.x, p.y + 21, 12.5, 0.5);
+      Text(fmt::format("{:g}", x_m), p.x, p.y + 21, 12.5, 0.5);
     }
-    for (double y = 0.0; y <= size_m.y(); y += step(size_m.y())) {
-      const cv::Point2d p = OnMap(0.0, y);
+    for (int i = 0; i * step(size_m.y()) <= size_m.y(); ++i) {
+      const double y_m = i * step(size_m.y());
+      const cv::Point2d p = OnMap(0.0, y_m);
       cv::line(canvas_, At(p.x, p.y), At(p.x - 6, p.y), kInk, Px(1.2), cv::LINE_AA);
-      Text(fmt::format("{:g}", y), p.x - 10, p.y + 4.5, 12.5, 1.0);
+      Text(fmt::format("{:g}", y_m), p.x - 10, p.y + 4.5, 12.5, 1.0);
     }
     Text("m east", kLeft + map_width_, kTop + map_height_ + 38, 12.5, 1.0, kFaint);
     Text("m north", kLeft - 10, kTop - 12, 12.5, 0.0, kFaint);

@@ -51,7 +51,7 @@ struct StartArea {
 };
 
 // Shape of the fire, the same at every site (paper: 46 m high, smoke included): a flame cone and a smoke
-// column that widens and leans towards lean_rad.
+// column that widens and leans.
 struct FireShape {
   double flame_height_m = 14.0;
   double flame_radius_m = 6.0;

@@ -29,7 +29,7 @@ namespace ed3r {
 struct AllowedRange {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  std::string_view unit = "";
+  std::string_view unit{};
 };
 
 class StrictMap {
