@@ -28,6 +28,8 @@ constexpr double kYawShare = 0.5;           // of the reaction torque at hover t
 // the loop that must follow, the tilt or the thrust.
 constexpr double kTiltTime = 1.2;
 constexpr double kThrustTime = 4.0;
+constexpr double kTiltingWind =
+    0.25;  // sideways force per weight from which a vertical leg is as slow to tilt
 
 constexpr double kLeastCruiseMps = 0.5;  // lower bound of robot.speed_mps
 // Below this the loops are so slow that the robot wanders: tall bodies on short arms, weak gravity.
@@ -56,9 +58,10 @@ double WindMps(const EnvironmentConfig& environment) {
 double SightSpeedMps(const MotionLimits& limits, double stand_off_m, const SensingConfig& sensing) {
   const double room_m = sensing.lidar_range_m - stand_off_m;
   if (room_m <= 0.0) return -1.0;
-  // Braking from cruise: v^2 / (2 a) + v a / (2 j); in between two scans the robot goes on unseeing.
+  // Braking that begins before cruise is reached: v^2 / (2 a) + 3/2 v a / j; the robot sees from half
+  // the smoothing behind, and in between two scans it goes on unseeing.
   const double a = limits.acceleration_mps2;
-  const double delay_s = a / (2.0 * limits.jerk_mps3) + 2.0 / sensing.lidar_rate_hz;
+  const double delay_s = 1.5 * a / limits.jerk_mps3 + 0.5 * limits.smoothing_s + 2.0 / sensing.lidar_rate_hz;
   return a * (std::sqrt(delay_s * delay_s + 2.0 * room_m / a) - delay_s);
 }
 
@@ -103,7 +106,10 @@ MotionLimits VerticalLimits(const Airframe& airframe, const Config& config) {
   limits.acceleration_mps2 = std::min({config.robot.acceleration_mps2, kFreeFallShare * airframe.gravity_mps2,
                                        (lift_n - weight_n - drag_n) / airframe.mass_kg,
                                        (weight_n - kWindShare * wind_n) / airframe.mass_kg});
-  SetSmoothing(limits, kThrustTime * kRotorLagS);
+  // In wind the tilt must change with the lift.
+  const double tilt_share = std::min(1.0, wind_n / (kTiltingWind * weight_n));
+  SetSmoothing(limits,
+               kThrustTime * kRotorLagS + tilt_share * kTiltTime / BandwidthsOf(airframe).attitude_radps);
   KeepInSight(limits, VerticalStandOffM(config.robot), config);
   return limits;
 }

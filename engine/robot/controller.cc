@@ -35,10 +35,12 @@ double YawOf(const Eigen::Quaterniond& q) {
 FlightController::FlightController(const Airframe& airframe, double tilt_max_rad)
     : airframe_(airframe), gain_(BandwidthsOf(airframe)), tilt_max_tan_(std::tan(tilt_max_rad)) {}
 
-FlightController::Hover FlightController::StartHover(const Eigen::Vector3d& air_force_n, double yaw_rad) {
-  integral_mps2_ = -air_force_n / airframe_.mass_kg;
+FlightController::Hover FlightController::StartHover(const Eigen::Vector3d& wind_mps, double yaw_rad) {
+  wind_mps_ = wind_mps;
+  integral_mps2_.setZero();
   last_velocity_mps_.setZero();
-  const Eigen::Vector3d force_n = LimitForceN(airframe_.WeightN() * Eigen::Vector3d::UnitZ() - air_force_n);
+  const Eigen::Vector3d force_n =
+      LimitForceN(airframe_.WeightN() * Eigen::Vector3d::UnitZ() - airframe_.DragN(-wind_mps));
   return {AttitudeAlong(force_n, yaw_rad), {force_n.norm(), Eigen::Vector3d::Zero()}};
 }
 
@@ -61,7 +63,8 @@ FlightController::Force FlightController::WantedForce(const RigidBodyState& stat
   const Eigen::Vector3d integral_rate = gain_.velocity_radps * gain_.integral_radps * speed_error;
   Eigen::Vector3d acceleration = r.acceleration_mps2 + gain_.velocity_radps * speed_error + integral_mps2_;
   acceleration.z() += airframe_.gravity_mps2;
-  const Eigen::Vector3d asked_n = airframe_.mass_kg * acceleration - airframe_.DragN(r.velocity_mps);
+  const Eigen::Vector3d asked_n =
+      airframe_.mass_kg * acceleration - airframe_.DragN(r.velocity_mps - wind_mps_);
   const Eigen::Vector3d force_n = LimitForceN(asked_n);
   // The integral learns nothing from an error that the rotors cannot mend.
   if (force_n == asked_n) integral_mps2_ += FlightWorld::kStepS * integral_rate;

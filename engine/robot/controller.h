@@ -1,12 +1,13 @@
 // Cascaded flight control: position -> velocity -> attitude -> body rate, at every physics step.
 //
 //   v_d = v_r + k_p (p_r - p)                 a_d = a_r + k_v (v_d - v) + k_v k_i integral of (v_d - v)
-//   F   = m (a_d + g z) - expected drag       thrust: F along body z; attitude: body z along F, heading to
+//   F   = m (a_d + g z) - drag at v_r         thrust: F along body z; attitude: body z along F, heading to
 //   yaw_r w_d = turn of F + k_a (attitude error)    torque = J (turn-up of F + k_w (w_d - w)) + w x J w
 //
-// The reference's jerk and snap and the derivative of the feedback say how fast F turns and how that changes
-// (differential flatness), so that the attitude follows without lag; the acceleration is measured, as by an
-// accelerometer. Gains: BandwidthsOf(). Threads: one object per mission.
+// The drag is that in the wind of the last hover; gusts since are left to the feedback. The reference's jerk
+// and snap and the derivative of the feedback say how fast F turns and how that changes (differential
+// flatness), so that the attitude follows without lag; the acceleration is measured, as by an accelerometer.
+// Gains: BandwidthsOf(). Threads: one object per mission.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +23,7 @@ struct FlightReference {
   Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
   Eigen::Vector3d acceleration_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d jerk_mps3 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d snap_mps4 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d snap_mps4 = Eigen::Vector3d::Zero();  // kRotorLagS ahead: torques arrive that late
   double yaw_rad = 0.0;
   double yaw_rate_radps = 0.0;
   double yaw_acceleration_radps2 = 0.0;
@@ -32,13 +33,13 @@ class FlightController {
  public:
   FlightController(const Airframe& airframe, double tilt_max_rad);
 
-  // Starts from a hover in balance with a force of the air on the robot, world axes: a robot that has hovered
-  // for a while knows it. Returns the attitude and the wrench of that hover.
+  // Starts from a hover in a wind, world axes: a robot that has hovered for a while has found out how hard
+  // the wind pushes it. Returns the attitude and the wrench of that hover.
   struct Hover {
     Eigen::Quaterniond attitude;
     Wrench wrench;
   };
-  Hover StartHover(const Eigen::Vector3d& air_force_n, double yaw_rad);
+  Hover StartHover(const Eigen::Vector3d& wind_mps, double yaw_rad);
 
   // The wrench to ask of the rotors for the next physics step.
   Wrench Step(const RigidBodyState& state, const FlightReference& reference);
@@ -57,6 +58,7 @@ class FlightController {
   const Airframe& airframe_;
   const Bandwidths gain_;
   double tilt_max_tan_;
+  Eigen::Vector3d wind_mps_ = Eigen::Vector3d::Zero();  // as at the last hover
   Eigen::Vector3d last_velocity_mps_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d integral_mps2_ = Eigen::Vector3d::Zero();
 };

@@ -44,6 +44,12 @@ double TubeMarginM(const EnvironmentConfig& environment) {
 
 int StepsPer(double rate_hz) { return std::max(1, static_cast<int>(std::lround(1.0 / (rate_hz * kStepS)))); }
 
+// Where along the leg the robot would rest if it braked one step after a time.
+double RestPoint(const Profile& profile, double time_s) {
+  const ProfilePoint front = profile.FrontAt(time_s);
+  return front.position + profile.BrakingDistance(front) + front.speed * kStepS;
+}
+
 }  // namespace
 
 struct Flight::Impl {
@@ -65,6 +71,12 @@ struct Flight::Impl {
         trace_every(StepsPer(kTraceHz)),
         pose(start) {}
 
+  struct Leg {
+    Eigen::Vector3d direction;
+    double length_m;
+    MotionLimits limits;
+    double stand_off_m;
+  };
   struct LegResult {
     double seconds = 0.0;
     double displacement_m = 0.0;  // along the leg
@@ -74,11 +86,14 @@ struct Flight::Impl {
   FlownMove Execute(const MotionCommand& command, std::uint32_t the_timestep);
   Eigen::Vector3d Target(const Eigen::Vector3d& displacement_m) const;
   void TakeOver(std::uint32_t the_timestep, double turn_rad);
-  LegResult FlyLeg(const Eigen::Vector3d& direction, double length_m, const MotionLimits& limits,
-                   double stand_off_m);
+  bool MustBrake(LegWatch& watch, const Profile& profile, int step) const;
+  LegResult FlyLeg(const Leg& leg);
   double FinishTurn();
+  void Bill(const LegResult& across, const LegResult& up_or_down, bool down, double excess_s,
+            FlownMove& move) const;
   void StepPhysics(const FlightReference& reference);
-  void AddTurn(FlightReference& reference) const;
+  FlightReference ReferenceAt(const Eigen::Vector3d& start_m, const Eigen::Vector3d& direction,
+                              const ProfilePoint& along) const;
   bool SettledAt(const Eigen::Vector3d& position_m) const;
   bool TurnSettled() const;
   void Record() const;
@@ -126,8 +141,7 @@ void Flight::Impl::TakeOver(std::uint32_t the_timestep, double turn_rad) {
   steps = 0;
   path_m = 0.0;
   wind.emplace(config.environment, seed, scenario, timestep);
-  const FlightController::Hover hover =
-      controller.StartHover(airframe.DragN(-wind->VelocityMps()), pose.yaw_rad);
+  const FlightController::Hover hover = controller.StartHover(wind->VelocityMps(), pose.yaw_rad);
   rotors.Settle(hover.wrench);
   state = {.position_m = pose.position_m, .attitude = hover.attitude};
   world.SetState(state);
@@ -138,11 +152,17 @@ void Flight::Impl::TakeOver(std::uint32_t the_timestep, double turn_rad) {
   Record();
 }
 
-void Flight::Impl::AddTurn(FlightReference& reference) const {
-  const ProfilePoint point = turn.At(steps * kStepS);
-  reference.yaw_rad = pose.yaw_rad + turn_sign * point.position;
-  reference.yaw_rate_radps = turn_sign * point.speed;
-  reference.yaw_acceleration_radps2 = turn_sign * point.acceleration;
+FlightReference Flight::Impl::ReferenceAt(const Eigen::Vector3d& start_m, const Eigen::Vector3d& direction,
+                                          const ProfilePoint& along) const {
+  const ProfilePoint heading = turn.At(steps * kStepS);
+  return {.position_m = start_m + along.position * direction,
+          .velocity_mps = along.speed * direction,
+          .acceleration_mps2 = along.acceleration * direction,
+          .jerk_mps3 = along.jerk * direction,
+          .snap_mps4 = along.snap * direction,
+          .yaw_rad = pose.yaw_rad + turn_sign * heading.position,
+          .yaw_rate_radps = turn_sign * heading.speed,
+          .yaw_acceleration_radps2 = turn_sign * heading.acceleration};
 }
 
 void Flight::Impl::StepPhysics(const FlightReference& reference) {
@@ -175,60 +195,59 @@ bool Flight::Impl::TurnSettled() const {
   return std::abs(error_rad) < kSettledRad && std::abs(state.rate_radps.z()) < kSettledRadps;
 }
 
-Flight::Impl::LegResult Flight::Impl::FlyLeg(const Eigen::Vector3d& direction, double length_m,
-                                             const MotionLimits& limits, double stand_off_m) {
-  if (length_m < kNothingM) return {};
+// The safety rule at one step of a leg: looks when the LiDARs do, and compares.
+bool Flight::Impl::MustBrake(LegWatch& watch, const Profile& profile, int step) const {
+  if (step % scan_every == 0) {
+    const double next_rest_m = RestPoint(profile, (step + scan_every) * kStepS);
+    watch.Tick(state.position_m, std::min(profile.Length(), next_rest_m));
+  }
+  return watch.RestLimitM() < std::min(profile.Length(), RestPoint(profile, step * kStepS));
+}
+
+Flight::Impl::LegResult Flight::Impl::FlyLeg(const Leg& leg) {
+  if (leg.length_m < kNothingM) return {};
   std::optional<LegWatch> watch;
   if (config.agents.obstacle_avoidance) {
-    watch.emplace(lidars, LegWatch::Rule{stand_off_m, 0.5 * TubeMarginM(config.environment)}, anchor_m,
-                  direction);
-    ++scans;
-    if (watch->RestLimitM() < std::min(length_m, kLeastHopM)) return {.halted = true};
+    watch.emplace(lidars, LegWatch::Rule{leg.stand_off_m, 0.5 * TubeMarginM(config.environment)}, anchor_m,
+                  leg.direction);
+    if (watch->RestLimitM() < std::min(leg.length_m, kLeastHopM)) {
+      scans += watch->Scans();
+      return {.halted = true};
+    }
   }
 
-  Profile profile(length_m, limits);
   LegResult result;
+  const Eigen::Vector3d start_m = anchor_m;
+  Profile profile(leg.length_m, leg.limits);
   for (int step = 0;; ++step) {
     const double time_s = step * kStepS;
-    if (watch && !result.halted) {
-      const ProfilePoint front = profile.FrontAt(time_s);
-      const double stop_m = front.position + profile.BrakingDistance(front) + front.speed * kStepS;
-      if (step % scan_every == 0)
-        watch->Tick(state.position_m, std::min(length_m, stop_m + front.speed * scan_every * kStepS));
-      if (watch->RestLimitM() < std::min(length_m, stop_m)) {
-        profile.BrakeAt(time_s);
-        result.halted = true;
-      }
+    const bool under_way = time_s < profile.DurationS();
+    if (watch && under_way && !result.halted && MustBrake(*watch, profile, step)) {
+      profile.BrakeAt(time_s);
+      result.halted = true;
     }
-    const ProfilePoint now = profile.At(time_s);
-    const bool arrived = time_s >= profile.DurationS();
-    const Eigen::Vector3d end_m = anchor_m + profile.Length() * direction;
+    anchor_m = start_m + profile.Length() * leg.direction;
     const bool late = time_s >= profile.DurationS() + kSettleLimitS;
-    if ((arrived && SettledAt(end_m)) || late) {
+    if (late) anchor_m = state.position_m;
+    if (late || (time_s >= profile.DurationS() && SettledAt(anchor_m))) {
       result.seconds = time_s;
-      result.displacement_m = (state.position_m - anchor_m).dot(direction);
-      anchor_m = late ? state.position_m : end_m;
-      return result;
+      break;
     }
-    FlightReference reference{.position_m = anchor_m + now.position * direction,
-                              .velocity_mps = now.speed * direction,
-                              .acceleration_mps2 = now.acceleration * direction,
-                              .jerk_mps3 = now.jerk * direction,
-                              .snap_mps4 = now.snap * direction};
-    AddTurn(reference);
-    StepPhysics(reference);
+    ProfilePoint along = profile.At(time_s);
+    along.snap = profile.At(time_s + kRotorLagS).snap;
+    StepPhysics(ReferenceAt(start_m, leg.direction, along));
   }
+  result.displacement_m = std::abs((state.position_m - start_m).dot(leg.direction));
+  if (watch) scans += watch->Scans();
+  return result;
 }
 
 double Flight::Impl::FinishTurn() {
   if (turn.Length() == 0.0) return 0.0;
-  const double limit_s = std::max(turn.DurationS(), steps * kStepS) + kSettleLimitS;
   const std::int64_t first = steps;
-  while (!TurnSettled() && steps * kStepS < limit_s) {
-    FlightReference reference{.position_m = anchor_m};
-    AddTurn(reference);
-    StepPhysics(reference);
-  }
+  const double limit_s = std::max(turn.DurationS(), steps * kStepS) + kSettleLimitS;
+  while (!TurnSettled() && steps * kStepS < limit_s)
+    StepPhysics(ReferenceAt(anchor_m, Eigen::Vector3d::Zero(), {}));
   return static_cast<double>(steps - first) * kStepS;
 }
 
@@ -239,43 +258,48 @@ FlownMove Flight::Impl::Execute(const MotionCommand& command, std::uint32_t the_
   ED3R_CHECK(command.displacement_m.allFinite() && std::isfinite(command.turn_rad), "command is not finite");
 
   const Eigen::Vector3d way_m = Target(command.displacement_m) - pose.position_m;
-  const int contacts_before = world.ContactSteps();
-  TakeOver(the_timestep, command.turn_rad);
-  LegResult across, upright;
-  const auto fly_across = [&] {
-    const Eigen::Vector3d flat_m(way_m.x(), way_m.y(), 0.0);
-    across =
-        FlyLeg(flat_m.normalized(), flat_m.norm(), envelope.horizontal, HorizontalStandOffM(config.robot));
-  };
-  const auto fly_upright = [&] {
-    const Eigen::Vector3d direction(0.0, 0.0, way_m.z() < 0.0 ? -1.0 : 1.0);
-    upright = FlyLeg(direction, std::abs(way_m.z()), envelope.vertical, VerticalStandOffM(config.robot));
-  };
+  const Eigen::Vector3d flat_m(way_m.x(), way_m.y(), 0.0);
+  const Leg flat = {flat_m.normalized(), flat_m.norm(), envelope.horizontal,
+                    HorizontalStandOffM(config.robot)};
+  const Leg upright = {Eigen::Vector3d(0.0, 0.0, way_m.z() < 0.0 ? -1.0 : 1.0), std::abs(way_m.z()),
+                       envelope.vertical, VerticalStandOffM(config.robot)};
   const bool vertical_first = config.energy.move_order == MoveOrder::kVerticalFirst;
-  if (vertical_first) fly_upright();
-  fly_across();
-  if (!vertical_first) fly_upright();
-  double excess_s = FinishTurn();
+  const int contacts_before = world.ContactSteps();
+
+  TakeOver(the_timestep, command.turn_rad);
+  const LegResult first = FlyLeg(vertical_first ? upright : flat);
+  const LegResult second = FlyLeg(vertical_first ? flat : upright);
+  const double excess_s = FinishTurn();
   if (steps % trace_every != 0) Record();
 
-  if (config.energy.move_time == MoveTime::kNominal) {
-    across.seconds = std::abs(across.displacement_m) / config.robot.speed_mps;
-    upright.seconds = std::abs(upright.displacement_m) / config.robot.speed_mps;
-    excess_s = std::max(0.0, turn.Length() / envelope.yaw.speed_mps - across.seconds - upright.seconds);
-  }
+  const LegResult& across = vertical_first ? second : first;
+  const LegResult& up_or_down = vertical_first ? first : second;
+  Bill(across, up_or_down, way_m.z() < 0.0, excess_s, move);
   if (steps > 0) {
     pose.position_m = state.position_m;
     pose.yaw_rad = YawOf(state.attitude);
   }
   pose.tilt_rad = command.tilt_rad;
   move.end = pose;
-  move.horizontal_s = across.seconds;
-  (way_m.z() < 0.0 ? move.descent_s : move.ascent_s) = upright.seconds;
-  move.hovering_s = excess_s;
   move.distance_m = path_m;
-  move.halted = across.halted || upright.halted;
+  move.halted = across.halted || up_or_down.halted;
   move.contact_steps = world.ContactSteps() - contacts_before;
   return move;
+}
+
+// Times by movement type (Eq. 2): as flown, or as distance / speed (energy.move_time, R4).
+void Flight::Impl::Bill(const LegResult& across, const LegResult& up_or_down, bool down, double excess_s,
+                        FlownMove& move) const {
+  double across_s = across.seconds;
+  double upright_s = up_or_down.seconds;
+  if (config.energy.move_time == MoveTime::kNominal) {
+    across_s = across.displacement_m / config.robot.speed_mps;
+    upright_s = up_or_down.displacement_m / config.robot.speed_mps;
+    excess_s = std::max(0.0, turn.Length() / envelope.yaw.speed_mps - across_s - upright_s);
+  }
+  move.horizontal_s = across_s;
+  (down ? move.descent_s : move.ascent_s) = upright_s;
+  move.hovering_s = excess_s;
 }
 
 Flight::Flight(const Scene& scene, const Config& config, const Pose& start, std::uint64_t seed,

@@ -45,23 +45,23 @@ struct Braking {
 Braking BrakingFrom(const ProfilePoint& from, const MotionLimits& limits) {
   const double jerk = limits.jerk_mps3;
   const double speed = std::max(from.speed, 0.0);
-  // Speed at which the acceleration is, or was, none on this course.
-  const double reach = speed + from.acceleration * from.acceleration / (2.0 * jerk);
-  const double peak = std::min(limits.acceleration_mps2, std::sqrt(reach * jerk));
-  if (from.acceleration < 0.0 && -from.acceleration >= peak) {
+  const double ramped = from.acceleration * from.acceleration / (2.0 * jerk);
+  if (from.acceleration < 0.0 && speed <= ramped) {
     // It brakes so hard already that it must let go now: linearly, to end at rest.
     const double seconds = 2.0 * speed / -from.acceleration;
     return {0.0, 0.0, 0.0, seconds, seconds > 0.0 ? -from.acceleration / seconds : 0.0};
   }
+  const double reach = speed + ramped;  // the speed at which the acceleration is, or was, none on this course
+  const double peak = std::min(limits.acceleration_mps2, std::sqrt(reach * jerk));
   const double let_go = peak * peak / (2.0 * jerk);
-  const double at_peak = reach - let_go;
-  return {(from.acceleration + peak) / jerk, -jerk, std::max(0.0, at_peak - let_go) / std::max(peak, 1e-9),
-          peak / jerk, jerk};
+  return {std::max(from.acceleration + peak, 0.0) / jerk, -jerk,
+          std::max(reach - 2.0 * let_go, 0.0) / std::max(peak, 1e-9), peak / jerk, jerk};
 }
 
 }  // namespace
 
 Profile::Profile(double length, const MotionLimits& limits) : limits_(limits) {
+  ED3R_CHECK(limits.smoothing_s > 0.0, "motion must be smoothed");
   ED3R_CHECK(length >= 0.0, fmt::format("length {}", length));
   if (length == 0.0) {
     limits_.smoothing_s = 0.0;
@@ -110,8 +110,8 @@ Profile::Node Profile::NodeAt(double time_s) const {
 ProfilePoint Profile::FrontAt(double time_s) const { return NodeAt(time_s).point; }
 
 ProfilePoint Profile::At(double time_s) const {
+  if (time_s >= DurationS()) return {.position = end_position_};
   const Node now = NodeAt(time_s);
-  if (limits_.smoothing_s <= 0.0) return now.point;
   const Node before = NodeAt(time_s - limits_.smoothing_s);
   const double per_s = 1.0 / limits_.smoothing_s;
   return {.position = per_s * (now.position_integral - before.position_integral),
