@@ -2,6 +2,8 @@
 // Specifications).
 #pragma once
 
+#include <cmath>
+
 #include "engine/config/field.h"
 
 namespace ed3r {
@@ -143,7 +145,7 @@ struct SensingConfig {
   int camera_width_px = 1920;
   int camera_height_px = 1080;
 
-  int Frames() const { return static_cast<int>(camera_fps * period_s + 0.5); }
+  int Frames() const { return static_cast<int>(std::lround(camera_fps * period_s)); }
   double PowerW() const { return camera_power_w + lidars * lidar_power_w; }
 
   template <class Self, class Visitor>
