@@ -27,7 +27,7 @@ Check CheckRandom() {
 }
 
 Check CheckPhysics() {
-  const double hover_w = PaperMovementPower({}, {}, {}).hover_w;
+  const double hover_w = MovementPowerOf({}, {}, {}).hover_w;
   return {"closed forms", std::abs(hover_w - 135.3) < 0.05,
           fmt::format("hover {:.2f} W, readings say 135.3 W", hover_w)};
 }

@@ -24,7 +24,7 @@ struct Options {
 };
 
 std::vector<Row> ClosedForms(const Config& c) {
-  const MovementPower power = PaperMovementPower(c.robot, c.environment, c.energy);
+  const MovementPower power = MovementPowerOf(c.robot, c.environment, c.energy);
   const Link link =
       EvaluateLink(c.radio, c.point.radio_distance_m, c.point.radio_bandwidth_hz, c.point.radio_shadowing_db);
   const double payload_byte = PayloadByte(c.sensing);

@@ -29,8 +29,7 @@ double ExpectedSimulatedS(const Arm& arm) {
   const Config& config = arm.config;
   if (FindStrategy(config.mission.strategy).early_completion && config.agents.early_completion)
     return kEarlyCompletionS;
-  return config.robot.BatteryJ() /
-         PaperMovementPower(config.robot, config.environment, config.energy).hover_w;
+  return config.robot.BatteryJ() / MovementPowerOf(config.robot, config.environment, config.energy).hover_w;
 }
 
 double ExpectedWallS(const Stage& stage, int threads) {
@@ -65,6 +64,10 @@ void PrintText(const SweepPlan& plan, int threads) {
     fmt::print("\nstage {}", stage.name);
     for (std::size_t i = 0; i < stage.after.size(); ++i)
       fmt::print("{}{}", i == 0 ? " after " : ", ", stage.after[i]);
+    if (stage.kind == StageKind::kTrain) {
+      fmt::print(": trains the networks that later stages ask for, unless the cache holds them\n");
+      continue;
+    }
     fmt::print(": {} arms x {} missions, about {:.1f} min on {} threads\n", stage.arms.size(), stage.missions,
                ExpectedWallS(stage, threads) / 60.0, threads);
     for (const Arm& arm : stage.arms) {

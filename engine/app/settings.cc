@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "engine/core/check.h"
+#include "engine/sweep/setting.h"
 
 namespace ed3r {
 
@@ -11,6 +12,11 @@ void ApplySettings(const std::vector<std::string>& settings, Scope scope, Config
     const auto equals = setting.find('=');
     if (equals == std::string::npos || equals == 0)
       throw UserError(fmt::format("--set {}: expected KEY=VALUE, e.g. robot.mass_kg=2.1", setting));
+    if (setting.substr(0, equals) == "robot") {
+      for (const Setting& part : ReadAirframeFile(setting.substr(equals + 1), "--set " + setting))
+        SetParameter(config, part.key, part.text, scope);  // checked when it was read
+      continue;
+    }
     const std::string problem =
         SetParameter(config, setting.substr(0, equals), std::string_view(setting).substr(equals + 1), scope);
     if (!problem.empty()) throw UserError(fmt::format("--set {}: {}", setting, problem));

@@ -33,14 +33,31 @@ struct EnumNames<MoveTime> {
                                                   {MoveTime::kNominal, "nominal"}};
 };
 
+enum class PowerModel { kPaper, kMomentum };
+template <>
+struct EnumNames<PowerModel> {
+  static constexpr EnumName<PowerModel> kNames[] = {{PowerModel::kPaper, "paper"},
+                                                    {PowerModel::kMomentum, "momentum"}};
+};
+
 struct EnergyConfig {
+  PowerModel model = PowerModel::kPaper;
   HoverForm hover_form = HoverForm::kPhysical;
   VerticalForm vertical_form = VerticalForm::kPrinted;
   MoveOrder move_order = MoveOrder::kHorizontalFirst;
   MoveTime move_time = MoveTime::kFlown;
+  double paper_efficiency = 1.0;
+  double momentum_efficiency = 0.853;
+  double induced_factor = 1.256;
+  double profile_share = 0.374;
+  double interference = 0.392;
+  double drag_area_m2 = 0.094;
 
   template <class Self, class Visitor>
   static void Describe(Self& self, Visitor&& visit) {
+    visit("model", self.model,
+          {.source = "R1-R3; ed3r fit",
+           .meaning = "the paper's three powers, or momentum theory as real flights need it"});
     visit("hover_form", self.hover_form,
           {.source = "R1",
            .meaning = "P_hov with rho A below the line (physical, 135.3 W) or above it (printed, 5.2 W)"});
@@ -50,6 +67,28 @@ struct EnergyConfig {
     visit("move_order", self.move_order, {.source = "R4", .meaning = "which leg of a move is flown first"});
     visit("move_time", self.move_time,
           {.source = "R4", .meaning = "bill the times that were flown, or distance / speed"});
+    constexpr std::string_view kFit = "ed3r fit, Matrice 100";
+    visit("paper_efficiency", self.paper_efficiency,
+          {.min = 0.05,
+           .max = 1,
+           .source = "1 in the paper; ed3r fit",
+           .meaning = "mechanical over electrical power, model paper"});
+    visit("momentum_efficiency", self.momentum_efficiency,
+          {.min = 0.2,
+           .max = 1,
+           .source = kFit,
+           .meaning = "mechanical over electrical power, model momentum"});
+    visit("induced_factor", self.induced_factor,
+          {.min = 1, .max = 2, .source = kFit, .meaning = "induced power over its ideal, kappa"});
+    visit("profile_share", self.profile_share,
+          {.min = 0, .max = 2, .source = kFit, .meaning = "profile power over ideal hover power, c_p"});
+    visit("interference", self.interference,
+          {.min = 0,
+           .max = 1.5,
+           .source = kFit,
+           .meaning = "what rotors in the wake of others cost in forward flight, chi"});
+    visit("drag_area_m2", self.drag_area_m2,
+          {.unit = "m^2", .min = 0, .max = 0.5, .source = kFit, .meaning = "parasite drag area f"});
   }
 };
 

@@ -25,11 +25,11 @@ namespace ed3r {
 enum class Scope { kMission, kPhysicsOnly };
 
 struct FieldInfo {
-  std::string_view unit;  // empty for none
+  std::string_view unit = {};  // empty for none
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  std::string_view source;  // table, equation or reading
-  std::string_view meaning;
+  std::string_view source = {};  // table, equation or reading
+  std::string_view meaning = {};
   Scope scope = Scope::kMission;
 };
 

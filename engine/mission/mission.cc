@@ -45,7 +45,7 @@ class Mission {
         scenario_(DealScenario(task.scene, task.config.mission, task.seed, task.scenario)),
         strategy_(FindStrategy(task.config.mission.strategy)),
         antenna_m_(task.scene.BaseStations()[static_cast<std::size_t>(scenario_.base_station)].antenna_m),
-        power_(PaperMovementPower(config_.robot, config_.environment, config_.energy)),
+        power_(MovementPowerOf(config_.robot, config_.environment, config_.energy)),
         flight_(task.scene, config_, scenario_.start, task.seed, task.scenario),
         controller_(AgentsOf(task, strategy_)),
         robot_(AgentsOf(task, strategy_)),

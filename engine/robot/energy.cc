@@ -1,52 +1,36 @@
 #include "engine/robot/energy.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
+#include "engine/robot/power/power_models.h"
 
 namespace ed3r {
 namespace {
 
-double HoverPowerW(const RobotConfig& robot, const EnvironmentConfig& environment, HoverForm form) {
-  const double disc_m2 =
-      std::numbers::pi * robot.propeller_radius_m * robot.propeller_radius_m;  // A_prop (R1)
-  const double g3 = std::pow(environment.gravity_mps2, 3);
-  const double mass_term = std::pow(robot.mass_kg, 1.5);
-  if (form == HoverForm::kPrinted)
-    return mass_term * std::sqrt(g3 / (2.0 * robot.propellers) * environment.air_density_kgm3 * disc_m2);
-  return mass_term * std::sqrt(g3 / (2.0 * environment.air_density_kgm3 * robot.propellers * disc_m2));
+MovementPower PaperModel(const Rotorcraft& craft, const Air& air, const RobotConfig& robot,
+                         const EnergyConfig& energy) {
+  const PaperParameters<> parameters{energy.paper_efficiency, robot.drag_horizontal, robot.drag_vertical};
+  const PaperPower<> power = PaperPowersW(parameters, craft, air, robot.speed_mps, robot.speed_mps,
+                                          energy.hover_form, energy.vertical_form);
+  return {power.hover_w, power.horizontal_w, power.ascent_w, power.descent_w};
 }
 
-double DragPowerW(double air_density_kgm3, double area_m2, double speed_mps, double coefficient) {
-  return 0.5 * air_density_kgm3 * area_m2 * std::pow(speed_mps, 3) * coefficient;
+MovementPower MomentumModel(const Rotorcraft& craft, const Air& air, double speed_mps,
+                            const EnergyConfig& energy) {
+  const MomentumParameters<> parameters{energy.momentum_efficiency, energy.induced_factor,
+                                        energy.interference, energy.profile_share, energy.drag_area_m2};
+  const auto power_w = [&](double horizontal_mps, double climb_mps) {
+    return MomentumPowerW(parameters, craft.mass_kg, horizontal_mps, climb_mps, air, craft.DiscAreaM2());
+  };
+  return {power_w(0.0, 0.0), power_w(speed_mps, 0.0), power_w(0.0, speed_mps), power_w(0.0, -speed_mps)};
 }
 
 }  // namespace
 
-MovementPower PaperMovementPower(const RobotConfig& robot, const EnvironmentConfig& environment,
-                                 const EnergyConfig& energy) {
-  MovementPower power;
-  const double v = robot.speed_mps;
-  const double rho = environment.air_density_kgm3;
-  power.hover_w = HoverPowerW(robot, environment, energy.hover_form);
-  power.horizontal_w = power.hover_w + DragPowerW(rho, robot.FrontAreaM2(), v, robot.drag_horizontal);
-  const double drag_w = DragPowerW(rho, robot.TopAreaM2(), v, robot.drag_vertical);
-  const double weight_n = robot.mass_kg * environment.gravity_mps2;
-  switch (energy.vertical_form) {
-    case VerticalForm::kPrinted:  // newtons taken for watts, as printed (R3)
-      power.ascent_w = weight_n + drag_w;
-      power.descent_w = weight_n - drag_w;
-      break;
-    case VerticalForm::kClimb:
-      power.ascent_w = power.hover_w + weight_n * v;
-      power.descent_w = std::max(power.hover_w - weight_n * v, 0.0);  // a descent does not charge the battery
-      break;
-    case VerticalForm::kMgv:
-      power.ascent_w = weight_n * v + drag_w;
-      power.descent_w = weight_n * v - drag_w;
-      break;
-  }
-  return power;
+MovementPower MovementPowerOf(const RobotConfig& robot, const EnvironmentConfig& environment,
+                              const EnergyConfig& energy) {
+  const Rotorcraft craft = MakeRotorcraft(robot);
+  const Air air{environment.air_density_kgm3, environment.gravity_mps2};
+  if (energy.model == PowerModel::kMomentum) return MomentumModel(craft, air, robot.speed_mps, energy);
+  return PaperModel(craft, air, robot, energy);
 }
 
 double SensingEnergyJ(const SensingConfig& sensing) { return sensing.PowerW() * sensing.period_s; }

@@ -15,8 +15,9 @@ struct MovementPower {
   double ascent_w = 0.0;
   double descent_w = 0.0;
 };
-MovementPower PaperMovementPower(const RobotConfig& robot, const EnvironmentConfig& environment,
-                                 const EnergyConfig& energy);
+// By energy.model: the paper's powers, or momentum theory at the same speeds (engine/robot/power).
+MovementPower MovementPowerOf(const RobotConfig& robot, const EnvironmentConfig& environment,
+                              const EnergyConfig& energy);
 
 // Eq. 3: all sensors over one sensing period.
 double SensingEnergyJ(const SensingConfig& sensing);

@@ -13,6 +13,7 @@ namespace ed3r {
 namespace {
 
 constexpr std::string_view kWorldKey = "mission.world";
+constexpr std::string_view kAirframeKey = "robot";
 
 std::filesystem::path Absolute(const std::string& path, const std::string& at) {
   std::error_code error;
@@ -70,6 +71,25 @@ void SettingReader::ResolveWorld(Setting& setting) const {
   }
 }
 
+std::vector<Setting> ReadAirframeFile(const std::string& path, const std::string& at) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error))
+    FailAt(at,
+           fmt::format("robot: '{}' is not a file; allowed: an airframe file as 'ed3r fit --out' writes it",
+                       path));
+  const std::vector<Setting> settings = SettingReader(FolderOf(path), FolderOf(path), false, {})
+                                            .ReadMap(ReadYamlFile(path).root, "an airframe file");
+  for (const Setting& setting : settings) {
+    const std::string subject = setting.key.substr(0, setting.key.find('.'));
+    if (subject != "robot" && subject != "energy" && subject != "environment" && subject != "cpu")
+      FailAt(setting.at,
+             fmt::format(
+                 "{}: is not allowed in an airframe file; allowed: robot.*, energy.*, environment.*, cpu.*",
+                 setting.key));
+  }
+  return settings;
+}
+
 std::vector<Setting> SettingReader::ReadMap(const YamlNode& map, std::string_view what,
                                             const std::vector<std::string>& skipped) const {
   if (map.kind != YamlNode::Kind::kMap)
@@ -92,6 +112,9 @@ void SettingReader::AppendMap(const YamlNode& map, const std::string& prefix,
     const std::string key = prefix + entry.key;
     if (entry.value.kind == YamlNode::Kind::kMap) {
       AppendMap(entry.value, key + ".", {}, settings);
+    } else if (key == kAirframeKey && entry.value.kind == YamlNode::Kind::kScalar) {
+      for (Setting& setting : ReadAirframeFile(WorldPath(folder_, entry.value.text), entry.value.at))
+        settings.push_back(std::move(setting));
     } else if (entry.value.kind == YamlNode::Kind::kScalar) {
       settings.push_back(Read(key, entry.at, entry.value.text, entry.value.at));
     } else {

@@ -32,6 +32,10 @@ std::string FolderOf(const std::string& file);
 // The world file as it can be opened, when it is written in a file of this folder.
 std::string WorldPath(const std::string& folder, const std::string& written);
 
+// The parameters of an airframe file, which 'robot: FILE' includes: a YAML map of robot.*, energy.*, environment.* and
+// cpu.* keys, as `ed3r fit` writes it. Positions are those in that file.
+std::vector<Setting> ReadAirframeFile(const std::string& path, const std::string& at);
+
 // Reads the settings of one file (or of the command line).
 class SettingReader {
  public:

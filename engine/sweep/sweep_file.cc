@@ -19,6 +19,14 @@ std::vector<Setting> ReadOverrides(const std::vector<std::string>& written, cons
     const std::string at = "--set " + text;
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) FailAt(at, "is not allowed; allowed: KEY=VALUE");
+    if (text.substr(0, equals) == "robot") {
+      // An airframe file; a later or earlier --set of one of its keys is a duplicate like any other.
+      for (Setting& setting : ReadAirframeFile(text.substr(equals + 1), at)) {
+        if (!places.emplace(setting.key, at).second) FailAt(at, fmt::format("{}: is set twice", setting.key));
+        settings.push_back(std::move(setting));
+      }
+      continue;
+    }
     settings.push_back(reader.Read(text.substr(0, equals), at, text.substr(equals + 1), at));
     const auto [first, is_new] = places.emplace(settings.back().key, at);
     if (!is_new) FailAt(at, fmt::format("{}: is set twice, first by {}", settings.back().key, first->second));

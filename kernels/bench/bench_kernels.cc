@@ -23,7 +23,7 @@ namespace ed3r::bench {
 namespace {
 
 constexpr double kSampleSeconds = 2e-4;  // shorter than a time slice of a busy machine
-constexpr double kTolerance = 1e-4;  // of the largest value: libraries sum in other orders
+constexpr double kTolerance = 1e-4;      // of the largest value: libraries sum in other orders
 
 std::vector<float> Normal(std::size_t n, double sigma, std::mt19937* rng) {
   std::normal_distribution<float> draw(0.0f, static_cast<float>(sigma));

@@ -29,21 +29,21 @@ MissionRecord OneStep(const MovementPower& power) {
 }
 
 TEST(LedgerTest, ATrueLedgerPasses) {
-  const MovementPower power = PaperMovementPower({}, {}, {});
+  const MovementPower power = MovementPowerOf({}, {}, {});
   const MissionRecord record = OneStep(power);
   EXPECT_NO_THROW(CheckLedger(record, power, kBatteryJ));
   EXPECT_NEAR(record.total_j, 139.85 * 3 + 23.73 + 11.86 / 2 + 135.3 * 7.2 + 72.2, 0.5);
 }
 
 TEST(LedgerTest, ALostPartIsFound) {
-  const MovementPower power = PaperMovementPower({}, {}, {});
+  const MovementPower power = MovementPowerOf({}, {}, {});
   MissionRecord record = OneStep(power);
   record.steps[0].total_j -= 1e-3;
   EXPECT_THROW(CheckLedger(record, power, kBatteryJ), InternalError);
 }
 
 TEST(LedgerTest, ABatteryThatDoesNotFollowIsFound) {
-  const MovementPower power = PaperMovementPower({}, {}, {});
+  const MovementPower power = MovementPowerOf({}, {}, {});
   MissionRecord record = OneStep(power);
   record.battery_left_j += 1e-3;
   EXPECT_THROW(CheckLedger(record, power, kBatteryJ), InternalError);

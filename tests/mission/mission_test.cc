@@ -7,6 +7,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/interrupt.h"
+#include "engine/robot/energy.h"
 #include "tests/mission/small_world.h"
 
 namespace ed3r {
@@ -103,6 +104,24 @@ TEST_F(MissionTest, HoveringIsBilledWhileTheRobotWaits) {
       EXPECT_GT(step.hover_computing_j, 0.0);
     }
   }
+}
+
+// The mission itself refuses a ledger that does not add up (CheckLedger); here both models get that far.
+TEST_F(MissionTest, EitherEnergyModelAddsUp) {
+  const MissionRecord paper = Fly("random", 6);
+  config_.energy.model = PowerModel::kMomentum;
+  const MissionRecord momentum = Fly("random", 6);
+  for (const MissionRecord* record : {&paper, &momentum}) {
+    EXPECT_NEAR(record->movement_j + record->sensing_j + record->computation_j + record->transmission_j,
+                record->total_j, 1e-9 * record->total_j);
+    EXPECT_NEAR(record->total_j + record->battery_left_j, 139860.0, 139860.0 * 1e-9);
+  }
+  const TimestepRecord& climb = momentum.steps[0];
+  EXPECT_NE(paper.steps[0].total_j, climb.total_j);
+  // In momentum theory a climb costs more than hovering for as long, a descent less.
+  const MovementPower power = MovementPowerOf(config_.robot, config_.environment, config_.energy);
+  EXPECT_GT(power.ascent_w, power.hover_w);
+  EXPECT_LT(power.descent_w, power.hover_w);
 }
 
 TEST_F(MissionTest, TheSameTaskGivesTheSameBits) {

@@ -86,8 +86,8 @@ double IdealHoverPowerW(double mass_kg, double density_kgm3, double gravity_mps2
 // P_hov of the paper at efficiency 1, in the physical or the printed form (R1).
 double PaperHoverW(const Rotorcraft& craft, const Air& air, HoverForm form);
 
-// The four powers at a horizontal speed v_h and a vertical speed v_v, both magnitudes >= 0 (R1-R3). A descent
-// never charges the battery: its power is at least 0.
+// The four powers at a horizontal speed v_h and a vertical speed v_v, both magnitudes >= 0 (R1-R3). In the climb form
+// a descent takes at least 0; the printed forms are left as they are, at any values.
 template <class T>
 PaperPower<T> PaperPowersW(const PaperParameters<T>& parameters, const Rotorcraft& craft, const Air& air,
                            double horizontal_mps, double vertical_mps, HoverForm hover_form,
@@ -108,13 +108,13 @@ PaperPower<T> PaperPowersW(const PaperParameters<T>& parameters, const Rotorcraf
     case VerticalForm::kClimb:
       ascent = hover + weight_n * vertical_mps;
       descent = hover - weight_n * vertical_mps;
+      if (descent < T(0.0)) descent = T(0.0);  // it does not charge the battery
       break;
     case VerticalForm::kMgv:
       ascent = weight_n * vertical_mps + vertical_drag;
       descent = weight_n * vertical_mps - vertical_drag;
       break;
   }
-  if (descent < T(0.0)) descent = T(0.0);
   const T& efficiency = parameters.efficiency;
   return {hover / efficiency, (hover + horizontal_drag) / efficiency, ascent / efficiency,
           descent / efficiency};
