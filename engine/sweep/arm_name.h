@@ -17,7 +17,7 @@ namespace ed3r {
 // "warmup", ed3r is "ed3r-75" with eta_min in percent, others their own name; it is left out where a list
 // names the points and no axis of its own varies it. A training stage that varies no strategy has its own
 // name there.
-//   rbs    ed3r-75    rbs,path_loss_exponent=3.2    light,rbs    training,eta_min=0.65
+//   rbs    ed3r-75    rbs,path_loss_exponent=3.2    rbs,light    training,eta_min=0.65
 // `axis_keys` are the keys that the stage's axes set.
 std::string ArmName(const Stage& stage, const Config& config, const std::vector<const AxisPoint*>& points,
                     const std::set<std::string>& axis_keys);

@@ -1,11 +1,14 @@
 // Axes: what a sweep varies. All four forms become the same thing, a list of points that each set one or more
 // parameters; the sweep is the cartesian product of its axes in the order written, the first one slowest.
 //
-//   agents.eta_min: [0.65, 0.75]                            grid: a point per value
-//   radio.path_loss_exponent: {range: [3.0, 4.0, 0.2]}      grid: first, last, step; the last is included
-//   zip: {robot.mass_kg: [1, 2], robot.battery_mah: [3000, 4000]}        lockstep: point i sets all i-th
-//   values list: [{name: heavy, robot.mass_kg: 3}, {robot.mass_kg: 1}]          points written out; names are
-//   optional
+//   agents.eta_min: [0.65, 0.75]                          grid: a point per value
+//   radio.path_loss_exponent: {range: [3.0, 4.0, 0.2]}    grid: first, last, step; the last is included
+//   zip:                                                  lockstep: point i sets all i-th values
+//     robot.mass_kg: [1, 2]
+//     robot.battery_mah: [3000, 4000]
+//   list:                                                 points written out; names are optional
+//     - {name: heavy, robot.mass_kg: 3}
+//     - {robot.mass_kg: 1}
 #pragma once
 
 #include <string>

@@ -5,8 +5,8 @@
 //   base: paper_base.yaml                    optional: another sweep file, merged underneath
 //   missions: 850                            per arm
 //   seed: 20260101                           64 bits; 0 when nobody says
-//   set: {robot.speed_mps: 4}                fixed values; `ed3r params` lists the keys; nested maps work,
-//   too sweep:                                   axes, see axis.h; `strategy` is short for mission.strategy
+//   set: {robot.speed_mps: 4}                fixed values; `ed3r params` lists the keys; may nest
+//   sweep:                                   axes, see axis.h; `strategy` is short for mission.strategy
 //     strategy: [rbs, ed3r]
 //     agents.eta_min: [0.65, 0.75, 0.85]
 //   where: [strategy == ed3r or agents.eta_min == 0.75]      all must hold, see condition.h
