@@ -17,7 +17,8 @@ std::size_t RegionMemory::IndexOf(const Eigen::Vector3d& position_m) const {
   Eigen::Vector3i cell;
   for (int axis = 0; axis < 3; ++axis)
     cell[axis] = std::clamp(static_cast<int>(std::floor(position_m[axis] / edge_m_)), 0, counts_[axis] - 1);
-  return static_cast<std::size_t>((cell.z() * counts_.y() + cell.y()) * counts_.x() + cell.x());
+  const int index = (cell.z() * counts_.y() + cell.y()) * counts_.x() + cell.x();
+  return static_cast<std::size_t>(index);
 }
 
 void RegionMemory::Visit(const Eigen::Vector3d& position_m, double scs) {
@@ -73,9 +74,9 @@ RegionMemory::Selection RegionMemory::Nearest(std::span<const Eigen::Vector3d> e
 
 double RegionMemory::DistanceToRegionM(std::size_t region, const Eigen::Vector3d& position_m) const {
   const int index = static_cast<int>(region);
-  const Eigen::Vector3d low_m = Eigen::Vector3d(index % counts_.x(), index / counts_.x() % counts_.y(),
-                                                index / (counts_.x() * counts_.y())) *
-                                edge_m_;
+  const Eigen::Vector3i cell(index % counts_.x(), index / counts_.x() % counts_.y(),
+                             index / (counts_.x() * counts_.y()));
+  const Eigen::Vector3d low_m = cell.cast<double>() * edge_m_;
   const Eigen::Vector3d inside_m =
       position_m.cwiseMax(low_m).cwiseMin(low_m + Eigen::Vector3d::Constant(edge_m_));
   return (position_m - inside_m).norm();
