@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "engine/core/check.h"
@@ -107,6 +108,33 @@ MetricValue Evaluate(const MetricDefinition& metric, const std::vector<MissionRe
   return result;
 }
 
+// Missions by the network that flew them; one group where none did.
+std::vector<std::vector<MissionRecord>> ByNetwork(const std::vector<MissionRecord>& missions) {
+  std::map<std::int64_t, std::vector<MissionRecord>> groups;
+  for (const MissionRecord& mission : missions) groups[mission.network].push_back(mission);
+  std::vector<std::vector<MissionRecord>> list;
+  for (auto& [network, group] : groups) list.push_back(std::move(group));
+  return list;
+}
+
+// The luck of training: networks are a sample too, and missions of one network share its luck. Student's t over the
+// networks' own values holds both kinds of chance; few networks can agree by accident, so it only ever widens the
+// interval over missions.
+void WidenByNetworks(const MetricDefinition& metric, const std::vector<std::vector<MissionRecord>>& groups,
+                     MetricValue& result) {
+  if (std::isnan(result.lo)) return;
+  std::vector<double> values;
+  for (const std::vector<MissionRecord>& group : groups) {
+    const double value = Evaluate(metric, group).value;
+    if (!std::isnan(value)) values.push_back(value);
+  }
+  const Interval between = MeanInterval(values);
+  if (!between.Exists()) return;
+  const double half_width = 0.5 * (between.hi - between.lo);
+  result.lo = std::min(result.lo, std::max(0.0, result.value - half_width));
+  result.hi = std::max(result.hi, std::min(metric.scale * UpperLimit(metric), result.value + half_width));
+}
+
 }  // namespace
 
 ArmMetrics ComputeMetrics(const ArmData& arm) {
@@ -117,8 +145,12 @@ ArmMetrics ComputeMetrics(const ArmData& arm) {
                      .failed = arm.failed,
                      .missing = arm.missing,
                      .values = {}};
-  for (const MetricDefinition& metric : MetricDefinitions())
+  const std::vector<std::vector<MissionRecord>> groups = ByNetwork(arm.missions);
+  metrics.networks = groups.size() > 1 ? static_cast<int>(groups.size()) : 0;
+  for (const MetricDefinition& metric : MetricDefinitions()) {
     metrics.values.push_back(Evaluate(metric, arm.missions));
+    if (metrics.networks > 1) WidenByNetworks(metric, groups, metrics.values.back());
+  }
   return metrics;
 }
 

@@ -25,11 +25,15 @@ struct ArmMetrics {
   std::string stage, name;
   std::int64_t missions = 0;  // flown; failed and missing ones as in ArmData
   std::int64_t failed = 0, missing = 0;
+  int networks = 0;                 // trained with different seeds; 0 where intervals know of one or none
   std::vector<MetricValue> values;  // in the order of MetricDefinitions()
 
   const MetricValue& operator[](std::string_view metric) const { return values[MetricIndex(metric)]; }
 };
 
+// Where missions flew with several networks (training.seeds), every interval includes the luck of training: it is at
+// least as wide as Student's t over the networks' own values.
+//
 // Everything of MetricDefinitions() for the missions of `arm`, failed and successful ones alike (R9).
 // Pure. Checks every record first (ED3R_CHECK): counts within the timesteps, a known outcome, finite energies
 // whose parts sum up to the total.

@@ -162,8 +162,9 @@ std::string PaperNotes(std::span<const ArmMetrics> arms, const std::vector<Claim
 
 std::string IntervalNotes(int width) {
   return Wrap(
-      "Intervals hold 95 % and are over missions, with the networks that flew: the luck of training is not "
-      "in "
+      "Intervals hold 95 % and are over missions; where an arm flew with several trained networks "
+      "(training.seeds) they are "
+      "at least as wide as Student's t over the networks, with one network the luck of training is not in "
       "them. Means: Student's t. MSR, FP, BD and missions within 10 min: Wilson. MSCS, seconds per timestep "
       "and "
       "mean power, ratios of totals: linearised variance between missions. WER, OR, ER and model shares: "
