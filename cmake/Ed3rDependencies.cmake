@@ -13,7 +13,11 @@ find_package(embree 3 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 if(ED3R_TESTS)
-  find_package(GTest REQUIRED)
+  find_package(GTest)
+  if(NOT GTest_FOUND)
+    message(STATUS "GoogleTest is not installed (scripts/setup --tests): the tests are left out")
+    set(ED3R_TESTS OFF)
+  endif()
 endif()
 
 # Bullet ships variables, not targets: wrap them once, as system headers.

@@ -77,8 +77,7 @@ std::vector<std::shared_ptr<const Model>> TrainAll(std::span<const TrainJob> job
   std::vector<std::shared_ptr<const Model>> models(jobs.size());
   std::vector<std::exception_ptr> errors(jobs.size());
   std::mutex reporting;
-  const int threads = std::max(1, options.threads);
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(std::max(1, options.threads))
   for (std::size_t at = 0; at < order.size(); ++at) {
     const std::size_t i = order[at];
     TrainControl control;
