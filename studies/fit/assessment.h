@@ -24,6 +24,9 @@ struct HoverPower {
   double mass_kg = 0.0;
   int rows = 0, flights = 0;
   double measured_w = 0.0, predicted_w = 0.0;  // means over the rows
+  // The fit to all flights without any airspeed at the rows' mass and density: what a mission pays for
+  // hovering. Real hover has wind, so this is an extrapolation of the fit. 0 where it is not known.
+  double still_air_w = 0.0;
   double ErrorPct() const { return 100.0 * (predicted_w / measured_w - 1.0); }
 };
 
@@ -51,7 +54,8 @@ Predictions Predict(const EnergyModel& model, const std::vector<Flight>& flights
                     const std::vector<double>& values);
 
 // Every flight predicted by a fit that has not seen it: flight i belongs to fold i mod min(kFolds, flights).
-// `full` is the fit to all flights: a fold's parameters start from it and are estimated from the fold's flights.
+// `full` is the fit to all flights: a fold's parameters start from it and are estimated from the fold's
+// flights.
 inline constexpr std::size_t kFolds = 10;
 Predictions CrossValidate(const EnergyModel& model, const std::vector<Flight>& flights, const Estimate& full);
 
@@ -61,8 +65,8 @@ inline constexpr std::size_t kMinGroups = 5;
 inline constexpr double kSegmentS = 10.0;
 std::vector<Flight> Groups(const FlightLog& log);
 
-// log(P_hover sqrt(rho)) = a + exponent log(m) over the flights that hover, errors robust to unequal variance.
-// Theory: 1.5. exponent is NaN with fewer than three flights or a single mass.
+// log(P_hover sqrt(rho)) = a + exponent log(m) over the flights that hover, errors robust to unequal
+// variance. Theory: 1.5. exponent is NaN with fewer than three flights or a single mass.
 struct HoverScaling {
   struct Point {
     double mass_kg, power_w;  // mean hover power, reduced to density kReferenceDensityKgm3

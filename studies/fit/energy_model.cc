@@ -94,7 +94,7 @@ std::vector<std::unique_ptr<EnergyModel>> MakeEnergyModels(const RobotConfig& ro
       {"profile_share", "energy.profile_share", "", 0.0, 2.0, 0.3},
       {"drag_area", "energy.drag_area_m2", "m^2", 0.0, 0.5, 0.03}};
   std::vector<ParameterSpec> interfering = isolated;
-  interfering.push_back({"interference", "energy.interference", "", 0.0, 1.5, 0.3});
+  interfering.push_back({"interference", "energy.interference", "", 0.0, 2.0, 0.5});
 
   using Printed = FormulaModel<PaperFormula<VerticalForm::kPrinted>>;
   using Climb = FormulaModel<PaperFormula<VerticalForm::kClimb>>;

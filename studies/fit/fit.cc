@@ -31,6 +31,20 @@ Rows AllRows(const std::vector<Flight>& flights) {
   return rows;
 }
 
+// Hover power of the fit in still air at the mass and density of each hovering row.
+void AddStillAir(const EnergyModel& model, const FitReport& report, ModelReport& result) {
+  Predictions still;
+  for (const Flight& flight : report.groups) {
+    std::vector<double>& powers = still.emplace_back();
+    for (FlightRow row : flight.rows) {
+      row.airspeed_mps = row.climb_mps = 0.0;
+      powers.push_back(model.PowerW(row, result.estimate.values.data()));
+    }
+  }
+  const std::vector<HoverPower> hover = Assess(report.groups, report.log.format, still).hover;
+  for (std::size_t k = 0; k < hover.size(); ++k) result.held_out.hover[k].still_air_w = hover[k].predicted_w;
+}
+
 ModelReport FitModel(const EnergyModel& model, const FitReport& report) {
   ModelReport result;
   result.name = model.name();
@@ -40,6 +54,7 @@ ModelReport FitModel(const EnergyModel& model, const FitReport& report) {
   result.uncertainty = EstimateUncertainty(model, report.groups, result.estimate);
   result.held_out_w = CrossValidate(model, report.groups, result.estimate);
   result.held_out = Assess(report.groups, report.log.format, result.held_out_w);
+  AddStillAir(model, report, result);
   return result;
 }
 
@@ -52,7 +67,8 @@ FitReport RunFit(const FitOptions& options) {
   report.log = ReadFlightLog(options.logs, FormatWithSettings(options.format, options));
   if (!options.evaluate.empty()) {
     const std::string& name = options.evaluate_format.empty() ? options.format : options.evaluate_format;
-    report.evaluate_log = ReadFlightLog(options.evaluate, FormatWithSettings(name, options));
+    report.evaluate_log =
+        ReadFlightLog(options.evaluate, FormatWithSettings(name, options), LogUse::kEvaluate);
   }
   report.segments = report.log.flights.size() < kMinGroups;
   report.groups = Groups(report.log);

@@ -16,13 +16,13 @@
 namespace ed3r {
 
 struct FitOptions {
-  std::vector<std::string> logs;
+  std::vector<std::string> logs = {};
   std::string format = "m100";  // LoadLogFormat: built-in name or YAML file
-  std::vector<std::string> evaluate;
-  std::string evaluate_format;  // "" = format
+  std::vector<std::string> evaluate = {};
+  std::string evaluate_format = {};  // "" = format
   // robot.* keys over those of the format, e.g. {"robot.mass_kg", "1.3"}: the airframe that flew. Other keys
   // throw.
-  std::vector<std::pair<std::string, std::string>> robot;
+  std::vector<std::pair<std::string, std::string>> robot = {};
   double gravity_mps2 = 9.8;
 };
 

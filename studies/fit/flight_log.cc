@@ -189,24 +189,37 @@ void MarkOutliers(Flight& flight, FlightLog& log) {
   }
 }
 
-void CheckEnough(const std::vector<CsvTable>& tables, const FlightLog& log) {
+double DurationS(const FlightLog& log) {
+  double duration_s = 0.0;
+  for (const Flight& flight : log.flights)
+    duration_s += flight.rows.back().time_s - flight.rows.front().time_s;
+  return duration_s;
+}
+
+void CheckEnough(const std::vector<CsvTable>& tables, const FlightLog& log, LogUse use) {
   const CsvTable& last = tables.back();
   const int last_line = last.rows() == 0 ? 1 : last.Line(last.rows() - 1);
+  const std::string where = fmt::format("{}:{}:1: ", last.path(), last_line);
+  if (log.flights.empty())
+    throw UserError(fmt::format("{}too few rows: no flight of at least {} rows", where, kMinFlightRows));
+  if (use == LogUse::kEvaluate) return;
   if (log.rows < kMinLogRows)
-    throw UserError(fmt::format("{}:{}:1: too few rows: {} in flight, at least {} are needed", last.path(),
-                                last_line, log.rows, kMinLogRows));
+    throw UserError(
+        fmt::format("{}too few rows: {} in flight, at least {} are needed", where, log.rows, kMinLogRows));
+  if (DurationS(log) < kMinLogS)
+    throw UserError(fmt::format("{}too short: {:.1f} s of flight, at least {:g} s are needed", where,
+                                DurationS(log), kMinLogS));
   if (log.hover_rows >= kMinHoverRows) return;
   const LogFormat& format = log.format;
   const std::string speed =
       format.columns.at(format.Has("airspeed_mps") ? "airspeed_mps" : "ground_speed_mps");
   const std::string climb =
       format.columns.at(format.climb_from == ClimbFrom::kAltitude ? "altitude_m" : "climb_mps");
-  throw UserError(
-      fmt::format("{}:{}:1: no hovering phase: {} rows have '{}' up to {:g} m/s and a climb rate ('{}') "
-                  "within {:g} m/s; at least "
-                  "{} are needed (format: hover)",
-                  last.path(), last_line, log.hover_rows, speed, format.hover_max_speed_mps, climb,
-                  format.hover_max_climb_mps, kMinHoverRows));
+  throw UserError(fmt::format(
+      "{}no hovering phase: {} rows have '{}' up to {:g} m/s and a climb rate ('{}') within {:g} m/s; "
+      "at least {} are needed (format: hover)",
+      where, log.hover_rows, speed, format.hover_max_speed_mps, climb, format.hover_max_climb_mps,
+      kMinHoverRows));
 }
 
 }  // namespace
@@ -216,7 +229,7 @@ bool IsHover(const FlightRow& row, const LogFormat& format) {
          std::abs(row.climb_mps) <= format.hover_max_climb_mps;
 }
 
-FlightLog MakeFlightLog(const std::vector<CsvTable>& tables, const LogFormat& format) {
+FlightLog MakeFlightLog(const std::vector<CsvTable>& tables, const LogFormat& format, LogUse use) {
   ED3R_CHECK(!tables.empty(), "no tables");
   FlightLog log;
   log.format = format;
@@ -243,16 +256,16 @@ FlightLog MakeFlightLog(const std::vector<CsvTable>& tables, const LogFormat& fo
       log.flights.push_back(std::move(flight));
     }
   }
-  CheckEnough(tables, log);
+  CheckEnough(tables, log, use);
   log.climb_drift_m = drift_m / static_cast<double>(log.flights.size());
   return log;
 }
 
-FlightLog ReadFlightLog(const std::vector<std::string>& paths, const LogFormat& format) {
+FlightLog ReadFlightLog(const std::vector<std::string>& paths, const LogFormat& format, LogUse use) {
   if (paths.empty()) throw UserError("ed3r fit: no log file given");
   std::vector<CsvTable> tables;
   for (const std::string& path : paths) tables.push_back(CsvTable::Read(path));
-  return MakeFlightLog(tables, format);
+  return MakeFlightLog(tables, format, use);
 }
 
 }  // namespace ed3r

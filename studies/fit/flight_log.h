@@ -47,14 +47,20 @@ struct FlightLog {
 
 inline constexpr int kMinFlightRows = 20;
 inline constexpr int kMinLogRows = 200;
+inline constexpr double kMinLogS = 30.0;
 inline constexpr int kMinHoverRows = 20;
+
+// Logs to fit must be long enough and hover; logs to evaluate need one flight.
+enum class LogUse { kFit, kEvaluate };
 
 // Reads the files as one log. Throws UserError naming file, line and column: a column that is missing, text
 // in a number, values out of range, time that does not increase, flights that are not contiguous, too few
 // rows, no hovering.
-FlightLog ReadFlightLog(const std::vector<std::string>& paths, const LogFormat& format);
+FlightLog ReadFlightLog(const std::vector<std::string>& paths, const LogFormat& format,
+                        LogUse use = LogUse::kFit);
 // The same from tables in memory.
-FlightLog MakeFlightLog(const std::vector<CsvTable>& tables, const LogFormat& format);
+FlightLog MakeFlightLog(const std::vector<CsvTable>& tables, const LogFormat& format,
+                        LogUse use = LogUse::kFit);
 
 bool IsHover(const FlightRow& row, const LogFormat& format);
 

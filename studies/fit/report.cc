@@ -87,15 +87,18 @@ void PrintParameters(const FitReport& report, std::ostream& out) {
 }
 
 void PrintHover(const FitReport& report, std::ostream& out) {
-  fmt::print(out, "\nHover power on held-out {}\n  {:>8} {:>6} {:>11}", UnitsOf(report), "mass kg", "rows",
-             "measured W");
-  for (const ModelReport& model : report.models) fmt::print(out, " {:>20}", model.name + " %");
+  fmt::print(out,
+             "\nHover power: error on held-out {}, and power of the fit in still air\n  {:>8} {:>6} {:>11}",
+             UnitsOf(report), "mass kg", "rows", "measured W");
+  for (const ModelReport& model : report.models) fmt::print(out, " {:>18}", model.name);
   fmt::print(out, "\n");
   for (std::size_t k = 0; k < report.models.front().held_out.hover.size(); ++k) {
     const HoverPower& hover = report.models.front().held_out.hover[k];
     fmt::print(out, "  {:>8.2f} {:>6} {:>11.1f}", hover.mass_kg, hover.rows, hover.measured_w);
-    for (const ModelReport& model : report.models)
-      fmt::print(out, " {:>+20.2f}", model.held_out.hover[k].ErrorPct());
+    for (const ModelReport& model : report.models) {
+      const HoverPower& of_model = model.held_out.hover[k];
+      fmt::print(out, " {:>+8.2f} % {:>5.0f} W", of_model.ErrorPct(), of_model.still_air_w);
+    }
     fmt::print(out, "\n");
   }
   if (!std::isnan(report.scaling.exponent))
@@ -172,10 +175,12 @@ std::string FittedYaml(const FitReport& report) {
   const auto entry = [](const std::string& key, double value, const std::string& comment) {
     return fmt::format("  {}: {:.6g}{}\n", key, value, comment.empty() ? "" : "  # " + comment);
   };
-  // The paper's model as printed and the momentum model with interference are what the engine flies.
+  // What the engine flies: the momentum model with interference, and the paper's as printed unless its climb
+  // form is the best of all.
+  const bool climb_form = report.models[report.best].name == "paper-climb";
   std::string robot_text, energy_text;
   for (const ModelReport& model : report.models) {
-    if (model.name != "paper" && model.name != "momentum") continue;
+    if (model.name != (climb_form ? "paper-climb" : "paper") && model.name != "momentum") continue;
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
       const std::string& key = model.parameters[i].key;
       const bool of_robot = key.starts_with("robot.");
@@ -193,7 +198,8 @@ std::string FittedYaml(const FitReport& report) {
           entry("width_m", robot.width_m, "") + entry("depth_m", robot.depth_m, "") +
           entry("battery_mah", robot.battery_mah, "") + entry("battery_v", robot.battery_v, "") + robot_text;
   const bool paper = report.models[report.best].name.starts_with("paper");
-  return text + "energy:\n" + fmt::format("  model: {}\n", paper ? "paper" : "momentum") + energy_text;
+  return text + fmt::format("energy:\n  model: {}\n{}{}", paper ? "paper" : "momentum",
+                            climb_form ? "  vertical_form: climb\n" : "", energy_text);
 }
 
 void WriteFitOutputs(const FitReport& report, const std::string& directory) {

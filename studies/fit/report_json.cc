@@ -56,6 +56,7 @@ Json AssessmentJson(const Assessment& assessment) {
                      {"flights", entry.flights},
                      {"measured_w", entry.measured_w},
                      {"predicted_w", entry.predicted_w},
+                     {"still_air_w", entry.still_air_w > 0.0 ? Json(entry.still_air_w) : Json(nullptr)},
                      {"error_pct", Number(entry.ErrorPct())}});
   return {{"median_flight_energy_error_pct", assessment.median_error_pct},
           {"p90_flight_energy_error_pct", assessment.p90_error_pct},

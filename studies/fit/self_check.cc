@@ -22,7 +22,7 @@ const std::vector<Plausible>& PlausibleModels() {
   static const std::vector<Plausible> models = {{"paper", {0.6, 0.9, 0.6}},
                                                 {"paper-climb", {0.6, 0.9}},
                                                 {"momentum-isolated", {0.75, 1.2, 0.5, 0.08}},
-                                                {"momentum", {0.75, 1.2, 0.5, 0.08, 0.4}}};
+                                                {"momentum", {0.75, 1.2, 0.5, 0.08, 0.6}}};
   return models;
 }
 

@@ -110,13 +110,13 @@ TEST(PhysicsCommandTest, RandomLegalValues) {
 // The airframe that `ed3r fit` made of the Matrice 100's flights: in still air it hovers at the ideal power of its four
 // 0.17 m rotors times (induced factor + profile share) / efficiency. (Its logged hovers, in wind, took 480 W.)
 TEST(PhysicsCommandTest, AnAirframeFileIsIncluded) {
-  const std::string file = ED3R_SOURCE_DIR "/sweeps/data/flight/m100.yaml";
+  const std::string file = ED3R_SOURCE_DIR "/sweeps/data/flight/m100_fitted.yaml";
   const CommandResult result = Ed3r("physics --json --set robot=" + file);
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
   const double discs_m2 = 4 * std::numbers::pi * 0.17 * 0.17;
   const double ideal_w = std::sqrt(std::pow(3.68 * 9.8, 3) / (2 * 1.225 * discs_m2));
-  EXPECT_NEAR(json["hover_power_w"].get<double>(), ideal_w * (1.2561 + 0.374487) / 0.853302, 1e-6);
+  EXPECT_NEAR(json["hover_power_w"].get<double>(), ideal_w * (1.45593 + 0) / 0.713262, 1e-6);
   EXPECT_GT(json["ascent_power_w"].get<double>(), json["hover_power_w"].get<double>());
   EXPECT_LT(json["descent_power_w"].get<double>(), json["hover_power_w"].get<double>());
   const CommandResult missing = Ed3r("physics --set robot=none.yaml");
