@@ -28,7 +28,7 @@
 
 namespace ed3r {
 
-inline constexpr int kTrainRows = 32;  // rows of a sub-block: part of the definition of the result
+inline constexpr int kTrainRows = 64;  // rows of a sub-block: part of the definition of the result
 
 struct TrainOptions {
   double learning_rate = 5e-6;
