@@ -28,7 +28,10 @@
 
 namespace ed3r {
 
-inline constexpr int kTrainRows = 32;  // rows of a sub-block: part of the definition of the result
+inline constexpr int kTrainRows =
+    64;  // rows of a sub-block: part of the definition of the result. Against 32
+         // rows the step is 2 % faster; 128 rows gain 1 % more but leave nothing to a
+         // second thread.
 
 struct TrainOptions {
   double learning_rate = 5e-6;
