@@ -139,8 +139,9 @@ class Stages {
 
   void Train() {
     store_->Commit();
-    networks_ = TrainNetworks(plan_, {options_.dir, options_.cache_dir, ThreadsFor(options_.schedule.threads),
-                                      options_.schedule.stop});
+    networks_ =
+        TrainNetworks(plan_, {options_.dir, options_.cache_dir, ThreadsFor(options_.schedule.threads),
+                              options_.schedule.stop, options_.schedule.progress, options_.schedule.quiet});
     if (networks_ == nullptr)
       summary_.flown.interrupted = true;
     else

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "engine/core/check.h"
+#include "engine/core/progress.h"
 #include "engine/core/version.h"
 #include "engine/mission/samples.h"
 #include "engine/rfnn/train_all.h"
@@ -181,7 +182,15 @@ std::unique_ptr<NetworkShelf> TrainingStage::Run() {
   train.cache = options_.cache_dir;
   train.threads = options_.threads;
   train.stop = options_.stop;
+  ProgressLine line(options_.progress, options_.quiet);
+  std::size_t done = 0;
+  train.on_done = [&](std::size_t) { ++done; };
+  train.on_epoch = [&](std::size_t job, int epoch, const EpochLoss& loss) {
+    line.Show(fmt::format("training  {}/{} networks  {}: epoch {}, validation loss {:.4f}", done,
+                          jobs_.size(), names_[job], epoch, loss.validation));
+  };
   const std::vector<std::shared_ptr<const Model>> models = TrainAll(jobs_, train);
+  line.Clear();
   if (std::any_of(models.begin(), models.end(), [](const auto& model) { return model == nullptr; }))
     return nullptr;
 
