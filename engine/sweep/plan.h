@@ -17,6 +17,9 @@ enum class StageKind { kFly, kTrain };
 struct Arm {
   std::string name;
   Config config;
+  // What the top-level axes of a sweep with stages set: "" without such axes. Every stage is flown once per variant, and
+  // a variant's networks learn from its own warm-up.
+  std::string variant;
   std::vector<std::pair<std::string, std::string>> settings;  // what the axes set, for tables
 
   // config.mission.world as the canonical text has it: relative to the sweep file's folder, or absolute where
