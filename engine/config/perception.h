@@ -9,6 +9,7 @@
 // of rendered pixels can fit them; until then they are calibrated on the RBS row alone.
 #pragma once
 
+#include "engine/config/detector.h"
 #include "engine/config/field.h"
 
 namespace ed3r {
@@ -71,6 +72,7 @@ struct PerceptionConfig {
   ResponseConfig full;
   ResponseConfig quantized{
       .half_signal = 0.00066, .slope = 3.0, .ceiling = 0.93, .view_sigma = 0.7, .frame_sigma = 0.6};
+  DetectorConfig detector;
 
   template <class Self, class Visitor>
   static void Describe(Self& self, Visitor&& visit) {
@@ -106,6 +108,7 @@ struct PerceptionConfig {
            .meaning = "camera tilt above which distractors mislead"});
     visit.Nested("full", self.full);
     visit.Nested("quantized", self.quantized);
+    visit.Nested("detector", self.detector);
   }
 };
 
