@@ -1,5 +1,10 @@
 #include "studies/metrics/arm.h"
 
+#include <algorithm>
+#include <numeric>
+
+#include "engine/core/check.h"
+
 namespace ed3r {
 
 KnownUnseen Split(const ArmData& arm, SplitBy by) {
@@ -10,6 +15,31 @@ KnownUnseen Split(const ArmData& arm, SplitBy by) {
     (known ? split.known : split.unseen).missions.push_back(mission);
   }
   return split;
+}
+
+ArmData LongestShare(const ArmData& arm, int percent) {
+  ED3R_CHECK(0 <= percent && percent <= 100, "a share of the missions");
+  const std::size_t count = (arm.missions.size() * static_cast<std::size_t>(percent) + 50) / 100;
+  std::vector<std::size_t> order(arm.missions.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return arm.missions[a].duration_s > arm.missions[b].duration_s;
+  });
+  order.resize(count);
+  std::sort(order.begin(), order.end());
+  ArmData longest{.stage = arm.stage, .name = arm.name, .missions = {}};
+  for (const std::size_t i : order) longest.missions.push_back(arm.missions[i]);
+  return longest;
+}
+
+std::string P85Name(std::string_view arm) {
+  return arm == "ed3r-75" ? "ed3r-p85" : std::string(arm) + "-p85";
+}
+
+ArmData P85Group(const ArmData& arm) {
+  ArmData group = LongestShare(arm, kP85Percent);
+  group.name = P85Name(arm.name);
+  return group;
 }
 
 }  // namespace ed3r

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "engine/core/check.h"
+#include "studies/claims/verdict_tables.h"
 #include "studies/paper/claims.h"
 #include "studies/tables/data_files.h"
 
@@ -27,7 +28,7 @@ void WriteFile(const fs::path& path, const std::string& text) {
 }  // namespace
 
 Report MakeReport(const RunResults& results) {
-  Report report{results.name, {}, {}};
+  Report report{results.name, {}, {}, JudgeClaims(PaperClaims(), results.arms)};
   for (const ArmData& arm : results.arms) {
     report.arms.push_back(ComputeMetrics(arm));
     report.generalisation.push_back(ComputeGeneralisation(arm));
@@ -40,13 +41,16 @@ std::string ReportText(const Report& report) {
   if (report.arms.empty()) return text + "No missions.\n";
   text += ResultTable(report.arms, PaperClaims());
   const std::string generalisation = GeneralisationTable(report.generalisation);
-  return generalisation.empty() ? text : text + '\n' + generalisation;
+  if (!generalisation.empty()) text += '\n' + generalisation;
+  const std::string verdicts = VerdictText(report.claims);
+  return verdicts.empty() ? text : text + '\n' + verdicts;
 }
 
 nlohmann::ordered_json ReportJson(const Report& report) {
   nlohmann::ordered_json json = {{"name", report.name}};
   json.update(ResultJson(report.arms, PaperClaims()));
   json["generalisation"] = GeneralisationJson(report.generalisation);
+  json["claims"] = VerdictJson(report.claims);
   return json;
 }
 
@@ -59,6 +63,7 @@ void WriteReport(const Report& report, const std::string& dir) {
   WriteFile(base / "report.json", ReportJson(report).dump(2) + '\n');
   WriteFile(base / "metrics.csv", ResultCsv(report.arms, PaperClaims()));
   WriteFile(base / "generalisation.csv", GeneralisationCsv(report.generalisation));
+  WriteFile(base / "verdicts.csv", VerdictCsv(report.claims));
 }
 
 }  // namespace ed3r

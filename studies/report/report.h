@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/claims/verdicts.h"
 #include "studies/metrics/arm.h"
 #include "studies/metrics/metrics.h"
 #include "studies/tables/result_table.h"
@@ -21,17 +22,18 @@ struct Report {
   std::string name;
   std::vector<ArmMetrics> arms;
   std::vector<Generalisation> generalisation;  // one per arm
+  ClaimStudy claims;
 };
 
 Report MakeReport(const RunResults& results);
 
-// For a terminal of kTerminalWidth characters: heading, result table, generalisation table.
+// For a terminal of kTerminalWidth characters: heading, result table, generalisation table, verdicts on the claims.
 std::string ReportText(const Report& report);
 
-// {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson}.
+// {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson, "claims": as VerdictJson}.
 nlohmann::ordered_json ReportJson(const Report& report);
 
-// Writes report.txt, report.json, metrics.csv and generalisation.csv into `dir`, which it makes if it has to;
+// Writes report.txt, report.json, metrics.csv, generalisation.csv and verdicts.csv into `dir`, which it makes if it has to;
 // each file is replaced whole or left as it was. Throws UserError when it cannot.
 void WriteReport(const Report& report, const std::string& dir);
 
