@@ -10,6 +10,7 @@
 #include "engine/store/reader.h"
 #include "studies/report/load.h"
 #include "studies/report/report.h"
+#include "studies/report/report_folder.h"
 
 namespace ed3r {
 namespace {
@@ -68,19 +69,43 @@ Command AddStatus(CLI::App& program) {
           }};
 }
 
+namespace {
+
+struct ReportOptions {
+  std::string dir, out;
+  bool json = false, no_figures = false;
+};
+
+int MakeReportOf(const ReportOptions& options) {
+  const RunResults results = LoadRun(options.dir);
+  const Report report = MakeReport(results);
+  FolderOptions folder{.dir = options.dir, .out = options.out, .figures = !options.no_figures, .command = ""};
+  folder.command = "ed3r report " + options.dir + (options.out.empty() ? "" : " --out " + options.out);
+  if (folder.out.empty()) folder.out = options.dir + "/report";
+  const FolderResult written = WriteReportFolder(report, results, folder);
+  if (options.json)
+    fmt::print("{}\n", ReportJson(report).dump(2));
+  else
+    fmt::print("{}\n{}: index.html, report.txt, report.json, metrics.csv, {} tables, {} figures\n",
+               ReportText(report), folder.out, report.tables.size(), written.figures);
+  if (!written.note.empty()) fmt::print(stderr, "note: {}\n", written.note);
+  if (written.plot_error.empty()) return kDone;
+  fmt::print(stderr, "figures: drawing failed: {}\n", written.plot_error);
+  return kFailedInside;
+}
+
+}  // namespace
+
 Command AddReport(CLI::App& program) {
+  auto options = std::make_shared<ReportOptions>();
   CLI::App* parser = program.add_subcommand(
-      "report", "Result tables of a run beside the paper's values; also writes them to DIR/report");
-  const auto options = AddDirOptions(*parser);
-  return {parser, [options] {
-            const Report report = MakeReport(LoadRun(options->dir));
-            WriteReport(report, options->dir + "/report");
-            if (options->json)
-              fmt::print("{}\n", ReportJson(report).dump(2));
-            else
-              fmt::print("{}", ReportText(report));
-            return kDone;
-          }};
+      "report", "Tables, figures and index.html of a run beside the paper's values, written to DIR/report");
+  parser->add_option("DIR", options->dir, "Run directory")->required();
+  parser->add_option("--out", options->out, "Folder to write to; default DIR/report");
+  parser->add_flag("--no-figures", options->no_figures,
+                   "Draw nothing (no Python); the figures' data are still written");
+  parser->add_flag("--json", options->json, "Print JSON");
+  return {parser, [options] { return MakeReportOf(*options); }};
 }
 
 Command AddDigest(CLI::App& program) {

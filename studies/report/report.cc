@@ -1,13 +1,10 @@
 #include "studies/report/report.h"
 
-#include <fmt/format.h>
-
 #include <filesystem>
-#include <fstream>
 
-#include "engine/core/check.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/paper/claims.h"
+#include "studies/report/files.h"
 #include "studies/tables/data_files.h"
 
 namespace ed3r {
@@ -15,24 +12,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void WriteFile(const fs::path& path, const std::string& text) {
-  const fs::path unfinished = path.string() + ".tmp";
-  std::ofstream file(unfinished, std::ios::binary);
-  file << text;
-  file.close();
-  std::error_code error;
-  if (file) fs::rename(unfinished, path, error);
-  if (!file || error) throw UserError(fmt::format("{}: cannot be written", path.string()));
+void WriteTable(const StudyTable& table, const fs::path& folder) {
+  const std::vector<Claim>& claims = PaperClaims();
+  WriteWhole(folder / (table.id + ".md"), MarkdownTable(table, claims));
+  WriteWhole(folder / (table.id + ".tex"), LatexTable(table, claims));
+  WriteWhole(folder / (table.id + ".csv"), CsvTable(table, claims));
+  WriteWhole(folder / (table.id + ".json"), JsonTable(table, claims).dump(2) + '\n');
 }
 
 }  // namespace
 
 Report MakeReport(const RunResults& results) {
-  Report report{results.name, {}, {}, JudgeClaims(PaperClaims(), results.arms)};
+  Report report{results.name, {}, {}, {}, JudgeClaims(PaperClaims(), results.arms)};
+  std::vector<ArmMetrics> p85;
   for (const ArmData& arm : results.arms) {
     report.arms.push_back(ComputeMetrics(arm));
     report.generalisation.push_back(ComputeGeneralisation(arm));
+    p85.push_back(ComputeMetrics(P85Group(arm)));
   }
+  report.tables = MakeStudyTables(report.arms, p85);
   return report;
 }
 
@@ -55,15 +53,14 @@ nlohmann::ordered_json ReportJson(const Report& report) {
 }
 
 void WriteReport(const Report& report, const std::string& dir) {
-  std::error_code error;
-  fs::create_directories(dir, error);
-  if (error) throw UserError(fmt::format("{}: cannot be made: {}", dir, error.message()));
   const fs::path base(dir);
-  WriteFile(base / "report.txt", ReportText(report));
-  WriteFile(base / "report.json", ReportJson(report).dump(2) + '\n');
-  WriteFile(base / "metrics.csv", ResultCsv(report.arms, PaperClaims()));
-  WriteFile(base / "generalisation.csv", GeneralisationCsv(report.generalisation));
-  WriteFile(base / "verdicts.csv", VerdictCsv(report.claims));
+  MakeFolder(base / "tables");
+  WriteWhole(base / "report.txt", ReportText(report));
+  WriteWhole(base / "report.json", ReportJson(report).dump(2) + '\n');
+  WriteWhole(base / "metrics.csv", ResultCsv(report.arms, PaperClaims()));
+  WriteWhole(base / "generalisation.csv", GeneralisationCsv(report.generalisation));
+  WriteWhole(base / "verdicts.csv", VerdictCsv(report.claims));
+  for (const StudyTable& table : report.tables) WriteTable(table, base / "tables");
 }
 
 }  // namespace ed3r

@@ -1,4 +1,5 @@
-// The report of a run: its tables as text, CSV and JSON. Reads nothing itself; load.h reads a run's store.
+// The report of a run: its tables as text, CSV, JSON, Markdown and LaTeX. Reads nothing itself; load.h reads a run's
+// store.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include "studies/metrics/arm.h"
 #include "studies/metrics/metrics.h"
 #include "studies/tables/result_table.h"
+#include "studies/tables/study_table.h"
 
 namespace ed3r {
 
@@ -22,6 +24,7 @@ struct Report {
   std::string name;
   std::vector<ArmMetrics> arms;
   std::vector<Generalisation> generalisation;  // one per arm
+  std::vector<StudyTable> tables;              // for papers and pages
   ClaimStudy claims;
 };
 
@@ -33,8 +36,9 @@ std::string ReportText(const Report& report);
 // {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson, "claims": as VerdictJson}.
 nlohmann::ordered_json ReportJson(const Report& report);
 
-// Writes report.txt, report.json, metrics.csv, generalisation.csv and verdicts.csv into `dir`, which it makes if it has to;
-// each file is replaced whole or left as it was. Throws UserError when it cannot.
+// Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv, and tables/ID.md, .tex, .csv and .json of each table
+// into `dir`, which it makes if it has to; each file is replaced whole or left as it was. Throws UserError when it
+// cannot.
 void WriteReport(const Report& report, const std::string& dir);
 
 }  // namespace ed3r

@@ -1,0 +1,80 @@
+#include "studies/figures/draw.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+extern char** environ;
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kNoMatplotlib = 3;  // plot.py's exit status for it
+
+std::string Environment(const char* name, const char* otherwise) {
+  const char* value = std::getenv(name);
+  return value != nullptr && *value != '\0' ? value : otherwise;
+}
+
+// The last line that is not empty: of a Python traceback the one that names the error.
+std::string LastLine(const fs::path& file) {
+  std::ifstream lines(file);
+  std::string last;
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty()) last = line;
+  return last;
+}
+
+// Runs the program with standard error in `errors`; its exit status, 128 + the signal that ended it, or -errno.
+int RunProgram(const std::vector<std::string>& command, const fs::path& errors) {
+  std::vector<char*> arguments;
+  for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDERR_FILENO, errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  pid_t child = 0;
+  const int failure = posix_spawn(&child, arguments.front(), &files, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  if (failure != 0) return -failure;
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return -errno;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace
+
+DrawResult DrawFigures(const std::string& folder) {
+  const std::string python = Environment("ED3R_PYTHON", "/usr/bin/python3");
+  const fs::path script = fs::path(Environment("ED3R_SCRIPTS", ED3R_SCRIPTS_DIR)) / "plot.py";
+  if (!fs::exists(script))
+    return {Drawing::kUnavailable,
+            fmt::format("{} is not there; set ED3R_SCRIPTS to its folder", script.string())};
+  const fs::path errors = fs::path(folder) / "plot.log";
+  const int status = RunProgram({python, script.string(), folder}, errors);
+  const std::string last = LastLine(errors);
+  std::error_code ignored;
+  if (status != 0 && status != kNoMatplotlib && status > 0)
+    return {Drawing::kFailed, fmt::format("{} ({}; all of it in {})", last.empty() ? "no message" : last,
+                                          script.string(), errors.string())};
+  fs::remove(errors, ignored);
+  if (status == -ENOENT || status == -EACCES)
+    return {Drawing::kUnavailable, fmt::format("{}: {}; set ED3R_PYTHON", python, std::strerror(-status))};
+  if (status < 0) return {Drawing::kFailed, fmt::format("{}: {}", python, std::strerror(-status))};
+  if (status == kNoMatplotlib) return {Drawing::kUnavailable, last};
+  return {};
+}
+
+}  // namespace ed3r

@@ -1,0 +1,24 @@
+// Draws figures by calling scripts/plot.py.
+#pragma once
+
+#include <string>
+
+namespace ed3r {
+
+enum class Drawing {
+  kDone,
+  kUnavailable,  // no interpreter, no script or no matplotlib: the data is there, the pictures are not
+  kFailed
+};
+
+struct DrawResult {
+  Drawing outcome = Drawing::kDone;
+  std::string message;  // one line where it is not done
+};
+
+// Turns FOLDER/data.json into pictures beside it. The interpreter is $ED3R_PYTHON, else /usr/bin/python3 (whose
+// packages Debian installs); the script lies in $ED3R_SCRIPTS, else in the scripts/ of the source tree that this program
+// was built from. Takes some seconds; one call at a time per folder.
+DrawResult DrawFigures(const std::string& folder);
+
+}  // namespace ed3r

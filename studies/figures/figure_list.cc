@@ -1,0 +1,211 @@
+#include "studies/figures/figure_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+
+namespace ed3r {
+namespace {
+
+using Indices = std::vector<std::size_t>;
+
+struct Group {
+  std::string id, title, paper;  // paper: where its counterparts are, "" where it has none
+  Indices arms;
+};
+
+struct PaperGroup {
+  const char *id, *title, *paper;
+  std::vector<std::string_view> arms;
+};
+
+const std::vector<PaperGroup>& PaperGroups() {
+  static const std::vector<PaperGroup> groups = {
+      {"thresholds", "ED³R under three detection thresholds", "Result 1", {"ed3r-65", "ed3r-75", "ed3r-85"}},
+      {"ablations",
+       "ED³R and its four ablations",
+       "Result 2",
+       {"ed3r-75", "ablation-1", "ablation-2", "ablation-3", "ablation-4"}},
+      {"baselines",
+       "ED³R against its baselines",
+       "Result 3, its table as figures",
+       {"ed3r-75", "ecd2r", "rbs"}},
+  };
+  return groups;
+}
+
+bool IsWarmup(std::span<const ArmPlan> plans, const ArmData& arm) {
+  const ArmPlan* plan = PlanOf(plans, arm);
+  return plan != nullptr && plan->warmup;
+}
+
+std::string Strategy(std::span<const ArmPlan> plans, const ArmData& arm) {
+  const ArmPlan* plan = PlanOf(plans, arm);
+  return plan == nullptr ? "" : plan->Setting("mission.strategy");
+}
+
+// The named arms of the last stage that flew two of them at least.
+Indices Together(std::span<const ArmData> arms, const std::vector<std::string_view>& names) {
+  for (auto last = arms.rbegin(); last != arms.rend(); ++last) {
+    Indices found;
+    for (const std::string_view name : names)
+      for (std::size_t a = 0; a < arms.size(); ++a)
+        if (arms[a].stage == last->stage && arms[a].name == name && !arms[a].missions.empty())
+          found.push_back(a);
+    if (found.size() >= 2) return found;
+  }
+  return {};
+}
+
+// `rest` stage by stage, in groups of kGroupArms at most.
+void AddRest(std::span<const ArmData> arms, const Indices& rest, std::vector<Group>& groups) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < rest.size() && count < kMostGroups; ++count) {
+    Group group{fmt::format("arms-{}", count + 1), fmt::format("Stage {}", arms[rest[i]].stage), "", {}};
+    const std::string& stage = arms[rest[i]].stage;
+    while (i < rest.size() && arms[rest[i]].stage == stage && group.arms.size() < kGroupArms)
+      group.arms.push_back(rest[i++]);
+    groups.push_back(std::move(group));
+  }
+}
+
+std::vector<Group> MakeGroups(std::span<const ArmData> arms, const Indices& drawn) {
+  std::vector<Group> groups;
+  std::set<std::size_t> held;
+  for (const PaperGroup& paper : PaperGroups()) {
+    const Indices found = Together(arms, paper.arms);
+    if (found.empty()) continue;
+    groups.push_back({paper.id, paper.title, paper.paper, found});
+    held.insert(found.begin(), found.end());
+  }
+  Indices rest;
+  for (const std::size_t a : drawn)
+    if (!held.contains(a)) rest.push_back(a);
+  AddRest(arms, rest, groups);
+  return groups;
+}
+
+// The warm-ups that the networks of the group's arms learnt from: ECD²R has one of its own, RBS needs none.
+Indices WarmupsOf(const Indices& group, std::span<const ArmData> arms, std::span<const ArmPlan> plans) {
+  bool own = false, shared = false;
+  for (const std::size_t a : group) {
+    const std::string strategy = Strategy(plans, arms[a]);
+    own = own || strategy == "ecd2r";
+    shared = shared || strategy == "ed3r" || strategy.starts_with("ablation");
+  }
+  Indices warmups;
+  for (std::size_t a = 0; a < arms.size(); ++a) {
+    if (!IsWarmup(plans, arms[a]) || arms[a].missions.empty()) continue;
+    if (std::find(group.begin(), group.end(), a) != group.end()) continue;
+    if (Strategy(plans, arms[a]) == "random-offload" ? own : shared) warmups.push_back(a);
+  }
+  return warmups;
+}
+
+std::string Counterpart(const Group& group, const char* which) {
+  return group.paper.empty() ? "" : fmt::format(" Counterpart of the paper's {} ({}).", which, group.paper);
+}
+
+void AddGroupFigures(const Group& group, std::span<const ArmData> arms, std::span<const ArmPlan> plans,
+                     std::vector<FigureSpec>& figures) {
+  figures.push_back(
+      {"overview-" + group.id, "overview", group.title + ": performance overview",
+       "Every point is a mission: its energy, its mean confidence over reliable timesteps, and how well the "
+       "networks foresaw its rewards. Open points ended with an empty battery. Lines are means over all "
+       "missions with 95 % intervals; diamonds are the paper's values." +
+           Counterpart(group, "performance overview"),
+       group.arms, WarmupsOf(group.arms, arms, plans)});
+  figures.push_back(
+      {"insights-" + group.id,
+       "insights",
+       group.title + ": where the energy goes, how missions end",
+       "Mean energy of a mission by what it was spent on (movement includes hovering while the robot senses, "
+       "computes and transmits), the outcomes of all missions, and the share of energy that went into failed "
+       "ones. Whiskers hold 95 %; diamonds are the paper's values." +
+           Counterpart(group, "performance insights"),
+       group.arms,
+       {}});
+  figures.push_back(
+      {"decisions-" + group.id,
+       "decisions",
+       group.title + ": decisions of the robot, durations",
+       "Where and with which model the timesteps were processed, how long missions take on average, and the "
+       "share of missions that have ended by a given time; the dotted line is the 10-minute window. Diamonds "
+       "are the paper's values." +
+           Counterpart(group, "decision-making figure"),
+       group.arms,
+       {}});
+}
+
+void AddRunFigures(std::span<const ArmData> arms, const Indices& drawn, std::size_t shown_missions,
+                   std::vector<FigureSpec>& figures) {
+  if (drawn.size() >= 2)
+    figures.push_back(
+        {"pareto",
+         "pareto",
+         "Energy against success",
+         "Each point is an arm: mean energy of a mission and mission success rate, with 95 % intervals on "
+         "both axes. Up and left is better; the line joins the arms that no other beats in both. Diamonds "
+         "are the paper's values, tied to ours. Counterpart of the paper's Pareto figure.",
+         drawn,
+         {}});
+  figures.push_back(
+      {"sites",
+       "sites",
+       "Success by fire site",
+       "Share of missions at each fire site that ended in success. The warm-up had seen the sites on the "
+       "left; those on the right are new to the networks. The columns at the end pool them, with 95 % "
+       "intervals.",
+       drawn,
+       {}});
+  if (shown_missions > 0)
+    figures.push_back(
+        {"map",
+         "map",
+         "Three missions seen from above",
+         "For each outcome the mission of the median duration. Dots are timesteps, coloured by their stable "
+         "confidence score; the ring is the start, the cross the end.",
+         {},
+         {}});
+  Indices long_enough;
+  for (const std::size_t a : drawn)
+    if (arms[a].missions.size() >= 2 * kConvergenceStart) long_enough.push_back(a);
+  if (!long_enough.empty())
+    figures.push_back(
+        {"convergence",
+         "convergence",
+         "How sure after how many missions",
+         "Half the width of the 95 % interval of mean energy and of the success rate, computed from the "
+         "first n missions of each arm. The grey line falls as one over the square root of n; where the "
+         "curves stay above it, the luck of training does not average out with more missions.",
+         long_enough,
+         {}});
+}
+
+}  // namespace
+
+const ArmPlan* PlanOf(std::span<const ArmPlan> plans, const ArmData& arm) {
+  for (const ArmPlan& plan : plans)
+    if (plan.stage == arm.stage && plan.name == arm.name) return &plan;
+  return nullptr;
+}
+
+std::vector<FigureSpec> ListFigures(std::span<const ArmData> arms, std::span<const ArmPlan> plans,
+                                    std::size_t shown_missions) {
+  Indices drawn, flown;
+  for (std::size_t a = 0; a < arms.size(); ++a) {
+    if (arms[a].missions.empty()) continue;
+    flown.push_back(a);
+    if (!IsWarmup(plans, arms[a])) drawn.push_back(a);
+  }
+  if (drawn.empty()) drawn = flown;
+  std::vector<FigureSpec> figures;
+  if (drawn.empty()) return figures;
+  for (const Group& group : MakeGroups(arms, drawn)) AddGroupFigures(group, arms, plans, figures);
+  AddRunFigures(arms, drawn, shown_missions, figures);
+  return figures;
+}
+
+}  // namespace ed3r

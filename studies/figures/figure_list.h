@@ -1,0 +1,38 @@
+// Which figures a run can have: the counterparts of the paper's, and ours. Decided by what was flown; how they look is
+// decided by scripts/plot.py.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "studies/figures/run_source.h"
+#include "studies/metrics/arm.h"
+
+namespace ed3r {
+
+// One figure: file FILES/ID.png and .svg. `kind` is the drawing: overview | insights | decisions | pareto | sites |
+// convergence | map.
+struct FigureSpec {
+  std::string id, kind, title, caption;
+  std::vector<std::size_t> arms;     // into the run's arms, in drawing order
+  std::vector<std::size_t> warmups;  // likewise; overview only
+};
+
+// Arms without missions are in no figure. Three figures (overview, insights, decisions) for each group of arms: the
+// paper's thresholds, ablations and baselines where two arms of one at least flew in one stage; then the arms that none
+// of these holds, stage by stage, at most kGroupArms in one figure and kMostGroups such groups; warm-ups only where
+// nothing else was flown. `plans` tells warm-ups and strategies; an arm without a plan is none.
+std::vector<FigureSpec> ListFigures(std::span<const ArmData> arms, std::span<const ArmPlan> plans,
+                                    std::size_t shown_missions);
+
+inline constexpr std::size_t kGroupArms = 9;
+inline constexpr std::size_t kMostGroups = 4;
+
+// The smallest sample of an arm whose convergence is drawn.
+inline constexpr std::size_t kConvergenceStart = 10;
+
+// The plan of an arm, or null.
+const ArmPlan* PlanOf(std::span<const ArmPlan> plans, const ArmData& arm);
+
+}  // namespace ed3r

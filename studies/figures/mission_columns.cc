@@ -1,0 +1,170 @@
+#include "studies/figures/mission_columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "studies/figures/figure_list.h"
+#include "studies/metrics/metrics.h"
+#include "studies/statistics/intervals.h"
+
+namespace ed3r {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+struct Column {
+  const char *name, *meaning;
+  double (*value)(const MissionRecord&);
+};
+
+constexpr Column kColumns[] = {
+    {"scenario", "number of the draws it met; equal numbers of two arms are the same fire, start and weather",
+     [](const MissionRecord& m) { return static_cast<double>(m.scenario); }},
+    {"site", "fire site, from 0", [](const MissionRecord& m) { return static_cast<double>(m.site); }},
+    {"site_known", "1: the warm-up had seen the site",
+     [](const MissionRecord& m) { return static_cast<double>(m.site_known); }},
+    {"base_station", "from 0", [](const MissionRecord& m) { return static_cast<double>(m.base_station); }},
+    {"network", "which training seed flew it, -1: none",
+     [](const MissionRecord& m) { return static_cast<double>(m.network); }},
+    {"outcome", "0 success, 1 false positive, 2 battery depleted",
+     [](const MissionRecord& m) { return static_cast<double>(m.outcome); }},
+    {"timesteps", "", [](const MissionRecord& m) { return static_cast<double>(m.timesteps); }},
+    {"duration_min", "min", [](const MissionRecord& m) { return m.duration_s / 60; }},
+    {"energy_kj", "total energy, kJ", [](const MissionRecord& m) { return m.total_j / 1000; }},
+    {"movement_kj", "kJ, hovering included", [](const MissionRecord& m) { return m.movement_j / 1000; }},
+    {"computation_kj", "kJ", [](const MissionRecord& m) { return m.computation_j / 1000; }},
+    {"transmission_kj", "kJ", [](const MissionRecord& m) { return m.transmission_j / 1000; }},
+    {"sensing_kj", "kJ", [](const MissionRecord& m) { return m.sensing_j / 1000; }},
+    {"scs_pct", "mean stable confidence score of its reliable timesteps, %; null without any",
+     [](const MissionRecord& m) {
+       return m.reliable_timesteps > 0 ? 100 * m.reliable_scs_sum / static_cast<double>(m.reliable_timesteps)
+                                       : kNone;
+     }},
+    {"offloads", "timesteps that were processed at the remote controller",
+     [](const MissionRecord& m) { return static_cast<double>(m.offloads); }},
+    {"full_local", "timesteps with the Full model on board",
+     [](const MissionRecord& m) { return static_cast<double>(m.full_local); }},
+    {"quantized_local", "timesteps with the Quantized model on board",
+     [](const MissionRecord& m) { return static_cast<double>(m.quantized_local); }},
+};
+
+// 1 - MAE / max MAE over the arm's missions (R29), in percent.
+Json LookForward(const ArmData& arm) {
+  std::vector<double> errors;
+  double worst = 0;
+  for (const MissionRecord& m : arm.missions) {
+    errors.push_back(m.predicted_timesteps > 0
+                         ? m.absolute_reward_error_sum / static_cast<double>(m.predicted_timesteps)
+                         : kNone);
+    if (!std::isnan(errors.back())) worst = std::max(worst, errors.back());
+  }
+  Json column = Json::array();
+  for (const double error : errors)
+    column.push_back(Rounded(worst > 0 ? 100 * (1 - error / worst) : error + 100));
+  return column;
+}
+
+struct Outcomes {
+  std::int64_t missions = 0, successes = 0, false_positives = 0, depleted = 0;
+
+  void Add(const MissionRecord& m) {
+    ++missions;
+    successes += m.outcome == static_cast<std::int64_t>(Outcome::kSuccess);
+    false_positives += m.outcome == static_cast<std::int64_t>(Outcome::kFalsePositive);
+    depleted += m.outcome == static_cast<std::int64_t>(Outcome::kBatteryDepleted);
+  }
+
+  Json Shares() const {
+    const auto share = [this](std::int64_t events) {
+      return Rounded(100 * static_cast<double>(events) / static_cast<double>(missions));
+    };
+    const Interval interval = RateInterval(successes, missions);
+    return {{"missions", missions},
+            {"success_pct", share(successes)},
+            {"lo", Rounded(100 * interval.lo)},
+            {"hi", Rounded(100 * interval.hi)},
+            {"false_positive_pct", share(false_positives)},
+            {"depleted_pct", share(depleted)}};
+  }
+};
+
+// kConvergenceStart, then each 1.3 times the one before, up to all missions.
+std::vector<std::size_t> SampleSizes(std::size_t all) {
+  std::vector<std::size_t> sizes;
+  for (std::size_t n = kConvergenceStart; n < all; n = (n * 13 + 9) / 10) sizes.push_back(n);
+  if (all >= kConvergenceStart) sizes.push_back(all);
+  return sizes;
+}
+
+}  // namespace
+
+Json Rounded(double value, int decimals) {
+  if (std::isnan(value)) return nullptr;
+  const double scale = std::pow(10.0, decimals);
+  const double rounded = std::round(value * scale) / scale;
+  if (rounded == std::floor(rounded) && std::abs(rounded) < 1e15) return static_cast<std::int64_t>(rounded);
+  return rounded;
+}
+
+Json ColumnUnits() {
+  Json units = Json::object();
+  for (const Column& column : kColumns) units[column.name] = column.meaning;
+  units["lf_accuracy_pct"] =
+      "look-forward accuracy, relative to the arm's worst mission, %; null without predictions";
+  return units;
+}
+
+Json MissionColumns(const ArmData& arm) {
+  Json columns = Json::object();
+  for (const Column& column : kColumns) {
+    Json& values = columns[column.name] = Json::array();
+    for (const MissionRecord& mission : arm.missions) values.push_back(Rounded(column.value(mission)));
+  }
+  columns["lf_accuracy_pct"] = LookForward(arm);
+  return columns;
+}
+
+Json SiteSuccess(const ArmData& arm) {
+  std::map<std::int64_t, std::pair<bool, Outcomes>> sites;
+  for (const MissionRecord& mission : arm.missions) {
+    auto& [known, outcomes] = sites[mission.site];
+    known = mission.site_known != 0;
+    outcomes.Add(mission);
+  }
+  Json list = Json::array();
+  for (const auto& [site, entry] : sites) {
+    Json json = {{"site", site}, {"known", entry.first}};
+    json.update(entry.second.Shares());
+    list.push_back(json);
+  }
+  return list;
+}
+
+Json PooledSuccess(const ArmData& arm, bool known) {
+  Outcomes outcomes;
+  for (const MissionRecord& mission : arm.missions)
+    if ((mission.site_known != 0) == known) outcomes.Add(mission);
+  return outcomes.missions == 0 ? Json(nullptr) : outcomes.Shares();
+}
+
+Json Convergence(const ArmData& arm) {
+  Json convergence = {
+      {"missions", Json::array()}, {"total_energy_kj", Json::array()}, {"msr_pct", Json::array()}};
+  for (const std::size_t n : SampleSizes(arm.missions.size())) {
+    ArmData first{.stage = arm.stage, .name = arm.name, .missions = {}};
+    first.missions.assign(arm.missions.begin(), arm.missions.begin() + static_cast<std::ptrdiff_t>(n));
+    const ArmMetrics metrics = ComputeMetrics(first);
+    convergence["missions"].push_back(n);
+    for (const char* name : {"total_energy_kj", "msr_pct"}) {
+      const MetricValue& value = metrics[name];
+      convergence[name].push_back(Rounded(0.5 * (value.hi - value.lo)));
+    }
+  }
+  return convergence;
+}
+
+}  // namespace ed3r

@@ -1,0 +1,24 @@
+// Parts of the figures' data that come from the missions of one arm; layout in figure_data.h.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "studies/metrics/arm.h"
+
+namespace ed3r {
+
+nlohmann::ordered_json ColumnUnits();
+nlohmann::ordered_json MissionColumns(const ArmData& arm);
+
+// One entry per site that was flown, by number; known ones as the missions say.
+nlohmann::ordered_json SiteSuccess(const ArmData& arm);
+
+// The missions of all known (or all unseen) sites as one; null without any.
+nlohmann::ordered_json PooledSuccess(const ArmData& arm, bool known);
+
+nlohmann::ordered_json Convergence(const ArmData& arm);
+
+// `value` with this many decimals; null for NaN.
+nlohmann::ordered_json Rounded(double value, int decimals = 4);
+
+}  // namespace ed3r

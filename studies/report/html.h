@@ -1,0 +1,26 @@
+// The report as one page: index.html in the report's folder; inline style, pictures by relative path, no scripts.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "studies/report/provenance.h"
+#include "studies/report/report.h"
+
+namespace ed3r {
+
+struct PageInputs {
+  const Report& report;
+  const Provenance& provenance;
+  nlohmann::ordered_json figures;  // "figures" of data.json, those of which the picture is there
+  std::string figures_note;        // why there are none, or fewer than could be; "" where all are
+  std::string report_command;      // that makes this page
+};
+
+std::string ReportPage(const PageInputs& inputs);
+
+// &, <, > and quotes as entities.
+std::string HtmlText(std::string_view text);
+
+}  // namespace ed3r

@@ -1,0 +1,53 @@
+#include "studies/report/provenance.h"
+
+#include <sstream>
+
+#include "engine/store/digest.h"
+#include "engine/store/reader.h"
+
+namespace ed3r {
+namespace {
+
+std::string Note(const std::map<std::string, std::string>& notes, const std::string& key) {
+  const auto found = notes.find(key);
+  return found == notes.end() ? "" : found->second;
+}
+
+std::string CommandOf(const std::map<std::string, std::string>& notes, const std::string& dir) {
+  if (!notes.contains("sweep file")) return "";
+  std::string command = "ed3r run " + notes.at("sweep file");
+  for (const char* option : {"--seed", "--missions"})
+    if (const std::string value = Note(notes, std::string("sweep ") + option); !value.empty())
+      command += std::string(" ") + option + " " + value;
+  std::istringstream settings(Note(notes, "sweep --set"));
+  for (std::string setting; std::getline(settings, setting);) command += " --set " + setting;
+  return command + " --out " + dir;
+}
+
+}  // namespace
+
+Provenance ReadProvenance(const std::string& dir) {
+  ResultReader reader(dir);
+  Provenance provenance;
+  provenance.dir = dir;
+  provenance.sweep = reader.Layout().name;
+  provenance.seed = std::to_string(reader.Layout().seed);
+  provenance.code_version = reader.StoredRecipe().code_version;
+  provenance.worlds = reader.StoredRecipe().worlds;
+  for (const Session& session : reader.Sessions())
+    provenance.sessions.push_back({session.host, session.begun_utc, session.ended_utc, session.notes});
+  if (!provenance.sessions.empty()) {
+    const std::map<std::string, std::string>& notes = provenance.sessions.back().notes;
+    provenance.sweep_file = Note(notes, "sweep file");
+    provenance.command = CommandOf(notes, dir);
+    provenance.commit = Note(notes, "commit");
+  }
+  for (const ArmStatus& arm : reader.Status()) {
+    provenance.planned += arm.planned, provenance.stored += arm.done, provenance.failed += arm.failed;
+    provenance.simulated_h += arm.simulated_s / 3600, provenance.wall_h += arm.wall_s / 3600;
+  }
+  provenance.digest = DigestOf(reader);
+  return provenance;
+}
+
+}  // namespace ed3r

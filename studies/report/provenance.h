@@ -1,0 +1,31 @@
+// Where results come from: what a reader needs to make them again.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace ed3r {
+
+struct Provenance {
+  std::string dir, sweep;
+  std::string sweep_file, command;  // of the last session; "" where it left no notes
+  std::string seed;
+  std::string code_version;  // hash of the sources that results depend on
+  std::string commit;        // of the last session; "unknown" outside a checkout
+  std::string digest;        // of what is stored
+  std::int64_t planned = 0, stored = 0, failed = 0;
+  double simulated_h = 0;                     // flown time of all missions
+  double wall_h = 0;                          // spent on them, summed over threads
+  std::map<std::string, std::string> worlds;  // file -> fingerprint
+  struct Session {
+    std::string host, begun_utc, ended_utc;
+    std::map<std::string, std::string> notes;  // machine, compiler, libraries
+  };
+  std::vector<Session> sessions;  // in order of their begin
+};
+
+// Reads the store in `dir`; the digest takes a pass over all timesteps. Throws UserError where there is no store.
+Provenance ReadProvenance(const std::string& dir);
+
+}  // namespace ed3r

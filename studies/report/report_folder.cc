@@ -1,0 +1,71 @@
+#include "studies/report/report_folder.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "studies/figures/draw.h"
+#include "studies/figures/figure_data.h"
+#include "studies/report/files.h"
+#include "studies/report/html.h"
+#include "studies/report/provenance.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+nlohmann::ordered_json FigureData(const Report& report, const RunResults& results, const std::string& dir) {
+  ResultReader reader(dir);
+  const std::vector<ArmPlan> plans = ReadArmPlans(reader.StoredRecipe().plan_text);
+  const std::vector<ShownMission> missions = PickMissions(reader, plans);
+  FoundScene found;
+  for (const ArmPlan& plan : plans)
+    if (!missions.empty() && plan.stage == missions.front().stage && plan.name == missions.front().arm)
+      found = FindScene(reader, plan.Setting("mission.world"));
+  return MakeFigureData({.name = results.name,
+                         .arms = results.arms,
+                         .metrics = report.arms,
+                         .plans = plans,
+                         .missions = missions,
+                         .scene = found.scene,
+                         .scene_note = found.why_not});
+}
+
+// Pictures of an earlier report would be taken for this one's.
+void RemovePictures(const fs::path& folder) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".png" || entry.path().extension() == ".svg")
+      fs::remove(entry.path(), error);
+}
+
+}  // namespace
+
+FolderResult WriteReportFolder(const Report& report, const RunResults& results,
+                               const FolderOptions& options) {
+  const fs::path base(options.out), figures = base / "figures";
+  WriteReport(report, options.out);
+  MakeFolder(figures);
+  const nlohmann::ordered_json data = FigureData(report, results, options.dir);
+  WriteWhole(figures / "data.json", data.dump() + '\n');
+  RemovePictures(figures);
+  FolderResult result;
+  if (!options.figures) {
+    result.note = "figures not drawn (--no-figures)";
+  } else if (const DrawResult drawing = DrawFigures(figures.string()); drawing.outcome == Drawing::kFailed) {
+    result.plot_error = drawing.message;
+  } else if (drawing.outcome == Drawing::kUnavailable) {
+    result.note = "figures not drawn: " + drawing.message;
+  }
+  nlohmann::ordered_json drawn = nlohmann::ordered_json::array();
+  for (const auto& figure : data.at("figures"))
+    if (fs::exists(figures / (figure.at("id").get<std::string>() + ".png"))) drawn.push_back(figure);
+  result.figures = static_cast<int>(drawn.size());
+  const std::string note = result.plot_error.empty() ? result.note : "drawing failed: " + result.plot_error;
+  WriteWhole(base / "index.html",
+             ReportPage({report, ReadProvenance(options.dir), std::move(drawn), note, options.command}));
+  return result;
+}
+
+}  // namespace ed3r

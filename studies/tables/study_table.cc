@@ -1,0 +1,128 @@
+#include "studies/tables/study_table.h"
+
+#include <utility>
+
+#include "studies/metrics/arm.h"
+#include "studies/tables/data_files.h"
+#include "studies/tables/names.h"
+
+namespace ed3r {
+namespace {
+
+struct Description {
+  const char *id, *title;
+  bool arms_down;
+  bool p85;  // the groups of its arms follow them
+  std::vector<std::string_view> arms, metrics;
+};
+
+const std::vector<Description>& Descriptions() {
+  static const std::vector<Description> all = {
+      {"thresholds",
+       "ED³R at three detection thresholds (paper, Result 1)",
+       false,
+       false,
+       {"ed3r-65", "ed3r-75", "ed3r-85"},
+       {"total_energy_kj", "movement_energy_kj", "computation_energy_kj", "transmission_energy_kj",
+        "sensing_energy_kj", "mscs_pct", "msr_pct", "wer_pct", "fp_pct", "bd_pct", "er_pct",
+        "lf_accuracy_pct", "or_pct", "model_full_pct", "model_quant_pct", "duration_mean_min",
+        "duration_max_min", "within_10min_pct"}},
+      {"ablations",
+       "ED³R and its ablations (paper, Result 2)",
+       false,
+       false,
+       {"ed3r-75", "ablation-1", "ablation-2", "ablation-3", "ablation-4"},
+       {"total_energy_kj", "movement_energy_kj", "computation_energy_kj", "transmission_energy_kj",
+        "sensing_energy_kj", "mscs_pct", "msr_pct", "wer_pct", "fp_pct", "bd_pct", "lf_accuracy_pct",
+        "or_pct", "model_full_pct", "model_quant_pct", "duration_mean_min"}},
+      {"baselines",
+       "ED³R against two baselines, all missions and the longest 15 % (P85) (paper, Result 3)",
+       true,
+       true,
+       {"ed3r-75", "ecd2r", "rbs"},
+       {"total_energy_kj", "mscs_pct", "msr_pct", "wer_pct", "lf_accuracy_pct", "duration_mean_min"}},
+  };
+  return all;
+}
+
+constexpr std::string_view kMainMetrics[] = {"total_energy_kj", "msr_pct",  "wer_pct",          "fp_pct",
+                                             "bd_pct",          "mscs_pct", "duration_mean_min"};
+
+// As the paper heads its columns; other metrics go by their label.
+constexpr std::pair<std::string_view, std::string_view> kShortNames[] = {
+    {"total_energy_kj", "energy"},
+    {"movement_energy_kj", "movement energy"},
+    {"computation_energy_kj", "computation energy"},
+    {"transmission_energy_kj", "transmission energy"},
+    {"sensing_energy_kj", "sensing energy"},
+    {"mscs_pct", "MSCS"},
+    {"msr_pct", "MSR"},
+    {"wer_pct", "WER"},
+    {"fp_pct", "FP"},
+    {"bd_pct", "BD"},
+    {"or_pct", "OR"},
+    {"lf_accuracy_pct", "LF accuracy"},
+    {"er_pct", "ER"},
+    {"duration_mean_min", "duration"},
+    {"duration_max_min", "longest mission"},
+};
+
+using Arms = std::vector<const ArmMetrics*>;
+
+const ArmMetrics* Find(std::span<const ArmMetrics> arms, std::string_view stage, std::string_view name) {
+  for (const ArmMetrics& arm : arms)
+    if (arm.stage == stage && arm.name == name && arm.missions > 0) return &arm;
+  return nullptr;
+}
+
+// The named arms of the last stage that holds two of them at least, in the order of `names`.
+Arms FindTogether(std::span<const ArmMetrics> arms, const std::vector<std::string_view>& names) {
+  for (auto last = arms.rbegin(); last != arms.rend(); ++last) {
+    Arms found;
+    for (const std::string_view name : names)
+      if (const ArmMetrics* arm = Find(arms, last->stage, name)) found.push_back(arm);
+    if (found.size() >= 2) return found;
+  }
+  return {};
+}
+
+StudyTable MakeTable(const Description& description, const Arms& arms, std::span<const ArmMetrics> p85) {
+  StudyTable table{description.id, description.title, description.arms_down, {}, {}, {}};
+  for (const ArmMetrics* arm : arms) table.arms.push_back(*arm);
+  if (description.p85)
+    for (const ArmMetrics* arm : arms)
+      if (const ArmMetrics* group = Find(p85, arm->stage, P85Name(arm->name))) table.arms.push_back(*group);
+  for (const ArmMetrics& arm : table.arms) table.labels.push_back(ArmLabel(arm.name));
+  for (const std::string_view metric : description.metrics) table.metrics.push_back(MetricIndex(metric));
+  return table;
+}
+
+}  // namespace
+
+std::vector<StudyTable> MakeStudyTables(std::span<const ArmMetrics> arms, std::span<const ArmMetrics> p85) {
+  StudyTable all{"arms", "Every arm", true, {}, {}, {}};
+  const std::vector<std::string> names = UniqueArmNames(arms);
+  for (std::size_t a = 0; a < arms.size(); ++a) {
+    if (arms[a].missions == 0) continue;
+    all.arms.push_back(arms[a]);
+    all.labels.push_back(ArmLabel(names[a]));
+  }
+  for (const std::string_view metric : kMainMetrics) all.metrics.push_back(MetricIndex(metric));
+  std::vector<StudyTable> tables;
+  if (!all.arms.empty()) tables.push_back(std::move(all));
+  for (const Description& description : Descriptions())
+    if (const Arms found = FindTogether(arms, description.arms); !found.empty())
+      tables.push_back(MakeTable(description, found, p85));
+  return tables;
+}
+
+std::string MetricHeading(std::size_t metric) {
+  const MetricDefinition& definition = MetricDefinitions()[metric];
+  std::string heading(definition.label);
+  for (const auto& [name, short_name] : kShortNames)
+    if (name == definition.name) heading = short_name;
+  if (!definition.unit.empty()) heading.append(", ") += definition.unit;
+  return heading;
+}
+
+}  // namespace ed3r
