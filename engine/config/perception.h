@@ -15,10 +15,11 @@
 
 namespace ed3r {
 
-enum class PerceptionTier { kProfile };
+enum class PerceptionTier { kProfile, kPixels };
 template <>
 struct EnumNames<PerceptionTier> {
-  static constexpr EnumName<PerceptionTier> kNames[] = {{PerceptionTier::kProfile, "profile"}};
+  static constexpr EnumName<PerceptionTier> kNames[] = {{PerceptionTier::kProfile, "profile"},
+                                                        {PerceptionTier::kPixels, "pixels"}};
 };
 
 // Response of one detection model.

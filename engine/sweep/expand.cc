@@ -174,8 +174,10 @@ std::vector<Stage> ExpandStages(const SweepSource& source, const std::vector<Set
   std::int64_t all_missions = 0;
   for (const StageSource& from : written) {
     const WrittenCount count = MissionsOf(from, source, missions);
-    stages.push_back({from.name, from.kind, from.after, count.value, {}});
+    stages.push_back({from.name, from.kind, from.after, count.value, {}, {}});
     Stage& stage = stages.back();
+    if (stage.kind == StageKind::kFly)
+      stage.precision = from.section.precision ? from.section.precision : source.top.precision;
     const std::size_t variant_axes = source.stages && source.top.axes ? source.top.axes->size() : 0;
     StageExpander expander(stage, from.at, Concatenated(source.top.axes, from.section.axes), variant_axes,
                            Concatenated(source.top.where, from.section.where));
