@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Calibrates what the paper does not give, on its RBS row alone: calibrate.py [--rounds N] [--points N] [--missions N].
+"""Calibrates what the paper does not give, on its RBS row alone: calibrate.py [--rounds N] [--points N] [--freeze].
 
 The detector's response and the density of misleading things are searched (cross-entropy method: every round draws points,
 the best of all rounds so far centre and narrow the next); the world and everything else stay as they are. A point is
@@ -7,13 +7,15 @@ judged by the RBS arm only, so all that is said of ED3R, its ablations and ECD2R
 
 Reads and writes sweeps/calibration/:
   record.csv    every point that was ever tried, with the metrics and the loss: the search continues where it stopped
-  best.yaml     the point with the least loss, as 'set' entries for a sweep
-The defaults in engine/config/perception.h are frozen from it by hand; tests/studies/calibration_test.cc fails when they
-differ from the frozen row of the record. Same arguments and code, same record: points are drawn from a fixed seed.
+  frozen.yaml   with --freeze: the point with the least loss, as parameters, and the hash of the world it was found in;
+                its row of the record is marked
+The defaults in engine/config/perception.h are those of frozen.yaml; tests/studies/calibration_test.cc fails when either
+or the world changes without the record. Same arguments and code, same record: points are drawn from a fixed seed.
 """
 
 import argparse
 import csv
+import hashlib
 import json
 import math
 import pathlib
@@ -23,8 +25,9 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "sweeps/calibration"
+WORLD = ROOT / "sweeps/worlds/ridges.yaml"
 SEED = 20261122
-ELITE = 8
+ELITE = 5
 
 # name: (low, high, logarithmic). Written as the keys that `point_settings` makes of them.
 SPACE = {
@@ -108,7 +111,7 @@ def fly(number, points, missions):
     sweep = folder / f"round{number}.yaml"
     lines = [f"# Which perception gives the paper's RBS row?   (calibration, round {number})", f"name: calibration-{number}",
              "seed: 20260101", f"missions: {missions}",
-             f"set: {{strategy: rbs, mission.world: {ROOT / 'sweeps/worlds/ridges.yaml'}}}", "sweep:", "  list:"]
+             f"set: {{strategy: rbs, mission.world: {WORLD}}}", "sweep:", "  list:"]
     for i, point in enumerate(points):
         settings = ", ".join(f"{key}: {value:g}" for key, value in point_settings(point).items())
         lines.append(f"    - {{name: p{i}, {settings}}}")
@@ -116,7 +119,7 @@ def fly(number, points, missions):
     out = folder / f"round{number}"
     program = ROOT / "build/release/ed3r"
     subprocess.run([program, "run", sweep, "--out", out, "--quiet"], check=True, stdout=subprocess.DEVNULL)
-    report = json.loads(subprocess.run([program, "report", out, "--json", *NO_FIGURES], check=True, capture_output=True,
+    report = json.loads(subprocess.run([program, "report", out, "--json", "--no-figures"], check=True, capture_output=True,
                                        text=True).stdout)
     return [report["arms"][f"p{i}"] for i in range(len(points))]
 
@@ -142,14 +145,24 @@ def write_record(path, rows):
             writer.writerow({key: (f"{value:.6g}" if isinstance(value, float) else value) for key, value in row.items()})
 
 
-NO_FIGURES = []
+def freeze(rows, record):
+    best = min(rows, key=lambda row: row["loss"])
+    for row in rows:
+        row["frozen"] = "yes" if row is best else ""
+    write_record(record, rows)
+    world = hashlib.sha256(WORLD.read_bytes()).hexdigest()
+    lines = [f"# Frozen by scripts/calibrate.py: round {best['round']:g}, point {best['point']:g} of record.csv, loss {best['loss']:.6g}.",
+             f"world_sha256: {world}  # of sweeps/worlds/ridges.yaml",
+             *(f"{key}: {value:g}" for key, value in point_settings(best).items())]
+    (FOLDER / "frozen.yaml").write_text("\n".join(lines) + "\n")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rounds", type=int, default=4)
+    parser.add_argument("--rounds", type=int, default=4, help="0 with --freeze: freeze what is recorded")
     parser.add_argument("--points", type=int, default=40)
     parser.add_argument("--missions", type=int, default=280)
+    parser.add_argument("--freeze", action="store_true")
     options = parser.parse_args()
     FOLDER.mkdir(parents=True, exist_ok=True)
     record = FOLDER / "record.csv"
@@ -165,8 +178,9 @@ def main():
                          **metrics, "loss": loss_of(arm), "frozen": ""})
         write_record(record, rows)
         best = min(rows, key=lambda row: row["loss"])
-        (FOLDER / "best.yaml").write_text("".join(f"{key}: {value:g}\n" for key, value in point_settings(best).items()))
         print(f"round {number}: least loss {best['loss']:.2f}", {m: round(best[m], 2) for m in TARGETS}, flush=True)
+    if options.freeze:
+        freeze(rows, record)
     return 0
 
 
