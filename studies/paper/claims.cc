@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include "engine/core/check.h"
 #include "studies/paper/csv.h"
@@ -11,8 +12,11 @@
 namespace ed3r {
 namespace {
 
-const CsvRow kColumns = {"id",          "where", "strategy",   "metric",      "kind",
-                         "paper_value", "unit",  "comparison", "exact_words", "note"};
+const CsvRow kColumns = {"id",          "where",        "strategy",   "metric",     "kind",
+                         "paper_value", "unit",         "source",     "comparison", "tolerance",
+                         "exact_words", "inconsistent", "unmeasured", "note"};
+const std::set<std::string> kKinds = {"value", "share", "ratio", "order", "setup"};
+const std::set<std::string> kSources = {"", "printed", "about", "derived", "construction"};
 
 std::optional<double> Number(const std::string& text) {
   double value = 0;
@@ -33,18 +37,8 @@ bool Contains(std::string_view text, std::string_view part) {
 }
 
 // "share" rows are values too: the share of missions within ten minutes.
-std::optional<PaperValue> ValueOf(const Claim& claim) {
-  if (claim.kind != "value" && claim.kind != "share") return std::nullopt;
-  const auto number = Number(claim.paper_value);
-  if (!number) return std::nullopt;
-  PaperValue value;
-  value.value = *number;
-  value.half_unit = HalfUnit(claim.paper_value);
-  value.printed = claim.paper_value;
-  value.claim = claim.id;
-  value.approximate = Contains(claim.unit, "approx");
-  value.derived = Contains(claim.unit, "derived") || claim.comparison == "by construction";
-  return value;
+bool IsValueOfOneArm(const Claim& claim) {
+  return (claim.kind == "value" || claim.kind == "share") && claim.comparison.empty();
 }
 
 int Rank(const Claim& claim, const PaperValue& value) {
@@ -59,11 +53,36 @@ std::vector<Claim> ParseClaims(std::string_view csv, std::string_view name) {
   if (rows.empty() || rows.front() != kColumns)
     throw UserError(fmt::format("{}:1: expected the columns {}", name, fmt::join(kColumns, ",")));
   std::vector<Claim> claims;
+  std::set<std::string> ids;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const CsvRow& row = rows[i];
-    claims.push_back({row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], row[9]});
+    // The rows of claims stand on one line each.
+    const auto refuse = [&](std::string_view column, const std::string& value, std::string_view allowed) {
+      throw UserError(fmt::format("{}:{}: {}: '{}' is not {}", name, i + 1, column, value, allowed));
+    };
+    if (!ids.insert(row[0]).second) refuse("id", row[0], "a new id");
+    if (kKinds.count(row[4]) == 0) refuse("kind", row[4], fmt::format("one of {}", fmt::join(kKinds, ", ")));
+    if (kSources.count(row[7]) == 0)
+      refuse("source", row[7], fmt::format("one of {}", fmt::join(kSources, ", ")));
+    const auto tolerance = row[9].empty() ? std::optional(0.0) : Number(row[9]);
+    if (!tolerance || !(*tolerance >= 0)) refuse("tolerance", row[9], "a number >= 0");
+    claims.push_back({row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], *tolerance,
+                      row[10], row[11], row[12], row[13]});
   }
   return claims;
+}
+
+std::optional<PaperValue> PaperValueOf(const Claim& claim) {
+  const auto number = Number(claim.paper_value);
+  if (!number) return std::nullopt;
+  PaperValue value;
+  value.value = *number;
+  value.half_unit = HalfUnit(claim.paper_value);
+  value.printed = claim.paper_value;
+  value.claim = claim.id;
+  value.approximate = claim.source == "about";
+  value.derived = claim.source == "derived" || claim.source == "construction";
+  return value;
 }
 
 const std::vector<Claim>& PaperClaims() {
@@ -77,8 +96,8 @@ std::optional<PaperValue> FindPaperValue(const std::vector<Claim>& claims, std::
   std::optional<PaperValue> best;
   int best_rank = 0;
   for (const Claim& claim : claims) {
-    if (claim.strategy != arm || claim.metric != metric) continue;
-    const auto value = ValueOf(claim);
+    if (claim.strategy != arm || claim.metric != metric || !IsValueOfOneArm(claim)) continue;
+    const auto value = PaperValueOf(claim);
     if (!value) continue;
     found.push_back(*value);
     const int rank = Rank(claim, *value);

@@ -10,21 +10,32 @@
 
 namespace ed3r {
 
-// One row of claims.csv. `kind` is "value" (a number of one arm), "share", "ratio" (between arms) or "order".
+// One row of claims.csv. `kind`:
+//   value   a number of one arm
+//   share   the same, a share of missions or of energy
+//   ratio   a number that compares arms
+//   order   which arm has more; no number
+//   setup   how the study was made
 struct Claim {
-  std::string id;        // "C104"
-  std::string where;     // "Res3 tab:baseline_comparisons"
-  std::string strategy;  // an arm's name, its "-p85" group, or several
-  std::string metric;    // a metric's name
-  std::string kind;
+  std::string id;           // "C104"
+  std::string where;        // "Res3 tab:baseline_comparisons"
+  std::string strategy;     // the arms that it speaks of ("ed3r-75", "rbs-p85"), separated by spaces
+  std::string metric;       // a metric's name
+  std::string kind;         // see above
   std::string paper_value;  // as printed; empty for an order
   std::string unit;
-  std::string comparison;
-  std::string exact_words;
+  std::string source;  // of the value: printed, about, derived, construction; empty without one
+  std::string
+      comparison;  // what is claimed, in the notation of studies/claims/expression.h; empty: the arm's metric
+  double tolerance = 0;      // beyond the value's rounding, in `unit`: how the words' vagueness was read
+  std::string exact_words;   // the paper's, without markup
+  std::string inconsistent;  // the arithmetic by which the paper contradicts itself here; mostly empty
+  std::string unmeasured;    // why no run can show it; mostly empty
   std::string note;
 };
 
-// Rows of `csv` in order. Throws UserError "name:line: ..." for a table with other columns.
+// Rows of `csv` in order. Throws UserError "name:line: ..." for a table with other columns, kinds or
+// sources, a repeated id, a tolerance that is no number.
 std::vector<Claim> ParseClaims(std::string_view csv, std::string_view name);
 
 // The paper's claims.
@@ -41,6 +52,9 @@ struct PaperValue {
   std::vector<std::string>
       elsewhere;  // other values that the paper prints for the same thing: "21.33 (C012)"
 };
+
+// The number of a claim; none for an order, and for "n/a".
+std::optional<PaperValue> PaperValueOf(const Claim& claim);
 
 // What the paper gives for `metric` of `arm` ("ed3r-75", "ed3r-p85", ...), or nothing. Where it prints
 // several values, its table goes before its text, its text before what is derived, and the first before the

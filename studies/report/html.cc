@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "studies/paper/claims.h"
+#include "studies/report/page_parts.h"
 #include "studies/report/page_style.h"
 #include "studies/tables/layout.h"
 #include "studies/tables/paper_cell.h"
@@ -157,7 +158,8 @@ std::string ReportPage(const PageInputs& inputs) {
     html += "<p class=\"note\">No missions yet.</p>\n";
   else
     html += TableHtml(report.tables.front()) + TableKey();
-  html += "</section>\n<section id=\"tables\"><h2>Tables</h2>\n";
+  html += "</section>\n" + VerdictSection(report.claims);
+  html += "<section id=\"tables\"><h2>Tables</h2>\n";
   for (std::size_t t = 1; t < report.tables.size(); ++t) html += TableHtml(report.tables[t]);
   html += fmt::format(
       "<p class=\"files\">Every metric of every arm: <a href=\"report.txt\">report.txt</a> <a "

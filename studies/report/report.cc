@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "studies/claims/verdict_tables.h"
 #include "studies/paper/claims.h"
 #include "studies/report/files.h"
 #include "studies/tables/data_files.h"
@@ -22,7 +23,7 @@ void WriteTable(const StudyTable& table, const fs::path& folder) {
 }  // namespace
 
 Report MakeReport(const RunResults& results) {
-  Report report{results.name, {}, {}, {}};
+  Report report{results.name, {}, {}, {}, JudgeClaims(PaperClaims(), results.arms)};
   std::vector<ArmMetrics> p85;
   for (const ArmData& arm : results.arms) {
     report.arms.push_back(ComputeMetrics(arm));
@@ -38,13 +39,16 @@ std::string ReportText(const Report& report) {
   if (report.arms.empty()) return text + "No missions.\n";
   text += ResultTable(report.arms, PaperClaims());
   const std::string generalisation = GeneralisationTable(report.generalisation);
-  return generalisation.empty() ? text : text + '\n' + generalisation;
+  if (!generalisation.empty()) text += '\n' + generalisation;
+  const std::string verdicts = VerdictText(report.claims);
+  return verdicts.empty() ? text : text + '\n' + verdicts;
 }
 
 nlohmann::ordered_json ReportJson(const Report& report) {
   nlohmann::ordered_json json = {{"name", report.name}};
   json.update(ResultJson(report.arms, PaperClaims()));
   json["generalisation"] = GeneralisationJson(report.generalisation);
+  json["claims"] = VerdictJson(report.claims);
   return json;
 }
 
@@ -55,6 +59,7 @@ void WriteReport(const Report& report, const std::string& dir) {
   WriteWhole(base / "report.json", ReportJson(report).dump(2) + '\n');
   WriteWhole(base / "metrics.csv", ResultCsv(report.arms, PaperClaims()));
   WriteWhole(base / "generalisation.csv", GeneralisationCsv(report.generalisation));
+  WriteWhole(base / "verdicts.csv", VerdictCsv(report.claims));
   for (const StudyTable& table : report.tables) WriteTable(table, base / "tables");
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/claims/verdicts.h"
 #include "studies/metrics/arm.h"
 #include "studies/metrics/metrics.h"
 #include "studies/tables/result_table.h"
@@ -24,17 +25,18 @@ struct Report {
   std::vector<ArmMetrics> arms;
   std::vector<Generalisation> generalisation;  // one per arm
   std::vector<StudyTable> tables;              // for papers and pages
+  ClaimStudy claims;
 };
 
 Report MakeReport(const RunResults& results);
 
-// For a terminal of kTerminalWidth characters: heading, result table, generalisation table.
+// For a terminal of kTerminalWidth characters: heading, result table, generalisation table, verdicts on the claims.
 std::string ReportText(const Report& report);
 
-// {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson}.
+// {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson, "claims": as VerdictJson}.
 nlohmann::ordered_json ReportJson(const Report& report);
 
-// Writes report.txt, report.json, metrics.csv, generalisation.csv, and tables/ID.md, .tex, .csv and .json of each table
+// Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv, and tables/ID.md, .tex, .csv and .json of each table
 // into `dir`, which it makes if it has to; each file is replaced whole or left as it was. Throws UserError when it
 // cannot.
 void WriteReport(const Report& report, const std::string& dir);

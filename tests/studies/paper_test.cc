@@ -47,7 +47,7 @@ TEST(ClaimsTest, AreAllThere) {
   std::set<std::string> ids, kinds;
   for (const Claim& claim : claims) ids.insert(claim.id), kinds.insert(claim.kind);
   EXPECT_EQ(ids.size(), claims.size());
-  EXPECT_EQ(kinds, (std::set<std::string>{"order", "ratio", "share", "value"}));
+  EXPECT_EQ(kinds, (std::set<std::string>{"order", "ratio", "setup", "share", "value"}));
 }
 
 TEST(ClaimsTest, OtherColumnsAreRefused) {

@@ -1,0 +1,141 @@
+#include "studies/claims/evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "studies/metrics/definitions.h"
+
+namespace ed3r {
+namespace {
+
+struct Weight {
+  double p_for = 1, p_against = 1;
+  const Formula* leaf = nullptr;  // the part that decides
+};
+
+Quantity Difference(const Formula& leaf) {
+  // As claimed is positive: right - left for "left < right".
+  const bool less = leaf.kind == Formula::Kind::kLess;
+  return {.kind = Quantity::Kind::kSubtract,
+          .number = 0,
+          .cell = {},
+          .of = {less ? leaf.right : leaf.left, less ? leaf.left : leaf.right}};
+}
+
+Weight WeighLeaf(const Formula& leaf, double tolerance, const ResampledArms& arms) {
+  const Resampled difference = arms.Of(Difference(leaf));
+  const Uncertainty uncertainty = UncertaintyOf(difference);
+  if (leaf.kind == Formula::Kind::kLess) {
+    const Sides sides = TestAgainst(difference, uncertainty, 0);
+    return {sides.above, sides.below, &leaf};
+  }
+  // Similar: two one-sided tests against the ends of the tolerance.
+  const Sides upper = TestAgainst(difference, uncertainty, tolerance);
+  const Sides lower = TestAgainst(difference, uncertainty, -tolerance);
+  return {std::max(upper.below, lower.above), std::min(upper.above, lower.below), &leaf};
+}
+
+Weight Weigh(const Formula& formula, double tolerance, const ResampledArms& arms) {
+  if (formula.of.empty()) return WeighLeaf(formula, tolerance, arms);
+  const bool all = formula.kind == Formula::Kind::kAll;
+  std::vector<Weight> parts;
+  for (const Formula& part : formula.of) parts.push_back(Weigh(part, tolerance, arms));
+  const auto by_for = [](const Weight& a, const Weight& b) { return a.p_for < b.p_for; };
+  const auto by_against = [](const Weight& a, const Weight& b) { return a.p_against < b.p_against; };
+  const auto count = static_cast<double>(parts.size());
+  const auto least_for = std::min_element(parts.begin(), parts.end(), by_for);
+  const auto most_for = std::max_element(parts.begin(), parts.end(), by_for);
+  const auto least_against = std::min_element(parts.begin(), parts.end(), by_against);
+  const auto most_against = std::max_element(parts.begin(), parts.end(), by_against);
+  if (all) return {most_for->p_for, std::min(1.0, count * least_against->p_against), most_for->leaf};
+  return {std::min(1.0, count * least_for->p_for), most_against->p_against, least_for->leaf};
+}
+
+// The paper's own value of a cell, give or take its rounding.
+struct Printed {
+  double value = kNoNumber, half_unit = 0;
+};
+
+Printed PaperDifference(const Formula& leaf, const std::vector<Claim>& claims) {
+  Printed printed;
+  printed.value = ValueOf(Difference(leaf), [&](const Cell& cell) {
+    const auto paper = FindPaperValue(claims, cell.arm, MetricDefinitions()[cell.metric].name);
+    if (!paper) return kNoNumber;
+    printed.half_unit += paper->half_unit;
+    return paper->value;
+  });
+  return printed;
+}
+
+bool Contains(double lo, double hi, double value, double slack) {
+  return lo - slack <= value && value <= hi + slack;  // false for NaN
+}
+
+bool HasAlternatives(const Formula& formula) {
+  return formula.kind == Formula::Kind::kAny ||
+         std::any_of(formula.of.begin(), formula.of.end(), HasAlternatives);
+}
+
+bool SizesAgree(const Formula& formula, const ResampledArms& arms, const std::vector<Claim>& claims) {
+  if (HasAlternatives(formula)) return false;
+  bool any = false;
+  for (const Formula* leaf : LeavesOf(formula)) {
+    const Printed paper = PaperDifference(*leaf, claims);
+    if (std::isnan(paper.value)) return false;
+    const Uncertainty ours = UncertaintyOf(arms.Of(Difference(*leaf)));
+    if (!Contains(ours.lo, ours.hi, paper.value, paper.half_unit)) return false;
+    any = true;
+  }
+  return any;
+}
+
+bool IsPlainCell(const Quantity& quantity) { return quantity.kind == Quantity::Kind::kCell; }
+
+bool IsP85(std::string_view arm) { return arm.ends_with("-p85"); }
+
+}  // namespace
+
+Evidence WeighOrder(const Claim& claim, const Formula& formula, const ResampledArms& arms,
+                    const std::vector<Claim>& claims) {
+  const Weight weight = Weigh(formula, claim.tolerance, arms);
+  Evidence evidence;
+  evidence.directional = true;
+  evidence.p_for = weight.p_for, evidence.p_against = weight.p_against;
+  const Resampled difference = arms.Of(Difference(*weight.leaf));
+  const Uncertainty uncertainty = UncertaintyOf(difference);
+  evidence.ours = difference.value, evidence.lo = uncertainty.lo, evidence.hi = uncertainty.hi;
+  evidence.paper = PaperDifference(*weight.leaf, claims).value;
+  evidence.sizes_agree = SizesAgree(formula, arms, claims);
+  evidence.detail = TextOf(*weight.leaf);
+  return evidence;
+}
+
+Evidence WeighNumber(const Claim& claim, const Quantity& quantity, const ResampledArms& arms) {
+  Evidence evidence;
+  if (const auto paper = PaperValueOf(claim)) evidence.paper = paper->value;
+  if (IsPlainCell(quantity) && !IsP85(quantity.cell.arm)) {
+    const MetricValue& ours = arms.TableValue(quantity.cell);
+    evidence.ours = ours.value, evidence.lo = ours.lo, evidence.hi = ours.hi;
+    return evidence;
+  }
+  const Resampled number = arms.Of(quantity);
+  const Uncertainty uncertainty = UncertaintyOf(number);
+  evidence.ours = number.value, evidence.lo = uncertainty.lo, evidence.hi = uncertainty.hi;
+  if (claim.kind != "ratio") {
+    // Student's t may leave what is possible.
+    if (evidence.lo < 0) evidence.lo = 0;
+    if (claim.unit == "%" && evidence.hi > 100) evidence.hi = 100;
+    return evidence;
+  }
+  evidence.directional = true;
+  evidence.neutral = quantity.kind == Quantity::Kind::kDivide ? 1 : 0;
+  const Sides sides = TestAgainst(number, uncertainty, evidence.neutral);
+  const bool more = evidence.paper > evidence.neutral;
+  evidence.p_for = more ? sides.above : sides.below;
+  evidence.p_against = more ? sides.below : sides.above;
+  return evidence;
+}
+
+}  // namespace ed3r

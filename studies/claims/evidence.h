@@ -1,0 +1,35 @@
+// What a run says about one claim, before any verdict: internal to studies/claims.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "studies/claims/expression.h"
+#include "studies/claims/resampled_arms.h"
+#include "studies/paper/claims.h"
+
+namespace ed3r {
+
+inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+struct Evidence {
+  double ours = kNoNumber, lo = kNoNumber, hi = kNoNumber;
+  double paper = kNoNumber;
+  // Of the claim's direction and of the opposite; only where it has one (orders, comparisons).
+  bool directional = false;
+  double p_for = kNoNumber, p_against = kNoNumber;
+  bool sizes_agree =
+      false;  // orders: every difference that the paper prints lies in our interval, and there is one
+  double neutral = 0;  // comparisons: the value of "no difference"
+  std::string detail;  // orders: the least certain part
+};
+
+// An order or similarity. All arms must be there.
+Evidence WeighOrder(const Claim& claim, const Formula& formula, const ResampledArms& arms,
+                    const std::vector<Claim>& claims);
+
+// A number of one or several arms, or a comparison ("ratio"). All arms must be there.
+Evidence WeighNumber(const Claim& claim, const Quantity& quantity, const ResampledArms& arms);
+
+}  // namespace ed3r

@@ -1,0 +1,235 @@
+#include "studies/claims/resampled_arms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+bool IsTotals(Estimate estimate) {
+  return estimate != Estimate::kMaximum && estimate != Estimate::kPercentile85;
+}
+
+std::set<std::int64_t> NetworksOf(const ArmData& arm) {
+  std::set<std::int64_t> networks;
+  for (const MissionRecord& mission : arm.missions) networks.insert(mission.network);
+  return networks;
+}
+
+const ArmData* FindArm(const std::vector<const ArmData*>& arms, std::string_view name) {
+  for (const ArmData* arm : arms)
+    if (arm->name == name || P85Name(arm->name) == name) return arm;
+  return nullptr;
+}
+
+// What mission adds to the two totals of a metric. Look-forward accuracy is relative to the worst mission at
+// hand, which stays the same in every resample (as in the tables).
+std::pair<double, double> Contribution(const MetricDefinition& metric, const MissionRecord& mission,
+                                       double worst) {
+  const double part = metric.part(mission), whole = metric.whole(mission);
+  if (metric.estimate != Estimate::kLookForward) return {whole == 0 ? 0 : part, whole};
+  if (whole == 0) return {0, 0};
+  return {worst > 0 ? 1 - part / whole / worst : 1, 1};
+}
+
+double WorstError(const MetricDefinition& metric, const ArmData& arm) {
+  double worst = 0;
+  for (const MissionRecord& mission : arm.missions)
+    if (const double whole = metric.whole(mission); whole > 0)
+      worst = std::max(worst, metric.part(mission) / whole);
+  return worst;
+}
+
+// Missions in the order in which a P85 group takes them; in mission order where all count.
+std::vector<std::size_t> FillingOrder(const ArmData& arm, bool is_p85) {
+  std::vector<std::size_t> order(arm.missions.size());
+  std::iota(order.begin(), order.end(), 0u);
+  if (is_p85)
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return arm.missions[a].duration_s > arm.missions[b].duration_s;
+    });
+  return order;
+}
+
+}  // namespace
+
+// One arm or P85 group, laid out for summing: two columns (part, whole) per metric, missions in the order in
+// which a P85 group is filled.
+struct ResampledArms::View {
+  std::string name;
+  bool is_p85 = false;
+  std::vector<std::size_t> metrics;
+  std::vector<int> unit, group;  // of each mission
+  std::vector<double> columns;   // missions x (2 x metrics)
+
+  std::size_t width() const { return 2 * metrics.size(); }
+
+  // Totals of the missions, each as often as `count` says; of a P85 group the longest 15 % of those.
+  template <class Count>
+  void Sum(const Count& count, std::vector<double>& totals) const {
+    totals.assign(width(), 0.0);
+    std::int64_t left = std::numeric_limits<std::int64_t>::max();
+    if (is_p85) {
+      std::int64_t all = 0;
+      for (std::size_t i = 0; i < unit.size(); ++i) all += count(i);
+      left = (all * kP85Percent + 50) / 100;
+    }
+    const std::size_t columns_per_mission = width();
+    for (std::size_t i = 0; i < unit.size() && left > 0; ++i) {
+      const std::int64_t times = std::min<std::int64_t>(left, count(i));
+      if (times == 0) continue;
+      left -= times;
+      const double* row = &columns[i * columns_per_mission];
+      for (std::size_t c = 0; c < columns_per_mission; ++c) totals[c] += static_cast<double>(times) * row[c];
+    }
+  }
+
+  double ValueOf(std::size_t metric, const std::vector<double>& totals) const {
+    const double whole = totals[2 * metric + 1];
+    return whole > 0 ? MetricDefinitions()[metrics[metric]].scale * totals[2 * metric] / whole : kNone;
+  }
+};
+
+ResampledArms::ResampledArms(std::span<const ArmData> arms, const std::vector<Cell>& cells) {
+  std::set<std::string> names;
+  for (const std::string& name : StudyArms()) names.insert(name);
+  for (const ArmData& arm : arms)
+    if (names.count(arm.name) > 0 && !arm.missions.empty() && FindArm(arms_, arm.name) == nullptr)
+      arms_.push_back(&arm);
+  Pair();
+
+  std::map<std::string, std::vector<std::size_t>> wanted;
+  for (const Cell& cell : cells)
+    if (FindArm(arms_, cell.arm) != nullptr) wanted[cell.arm].push_back(cell.metric);
+  std::vector<View> views;
+  for (const auto& [name, metrics] : wanted) views.push_back(MakeView(name, metrics));
+  Resample(views);
+}
+
+ResampledArms::View ResampledArms::MakeView(const std::string& name,
+                                            const std::vector<std::size_t>& metrics) {
+  const ArmData& arm = *FindArm(arms_, name);
+  View view{name, arm.name != name, {}, {}, {}, {}};
+  const ArmData group = view.is_p85 ? P85Group(arm) : ArmData{};
+  const ArmData& shown = view.is_p85 ? group : arm;
+  const ArmMetrics values = ComputeMetrics(shown);
+  std::vector<double> worst;
+  for (const std::size_t metric : metrics) {
+    Resampled& cell = cells_[{name, metric}];
+    cell.value = values.values[metric].value;
+    cell.network_count = NetworksOf(arm).size() > 1 ? networks_ : 1;
+    if (!IsTotals(MetricDefinitions()[metric].estimate)) continue;
+    view.metrics.push_back(metric);
+    worst.push_back(WorstError(MetricDefinitions()[metric], shown));
+  }
+  if (!view.is_p85) metrics_.emplace(name, values);
+  for (const std::size_t i : FillingOrder(arm, view.is_p85)) {
+    const MissionRecord& mission = arm.missions[i];
+    view.unit.push_back(unit_of_scenario_.at(mission.scenario));
+    view.group.push_back(group_of_scenario_.at(mission.scenario));
+    for (std::size_t m = 0; m < view.metrics.size(); ++m) {
+      const auto [part, whole] = Contribution(MetricDefinitions()[view.metrics[m]], mission, worst[m]);
+      view.columns.push_back(part), view.columns.push_back(whole);
+    }
+  }
+  return view;
+}
+
+void ResampledArms::Pair() {
+  const ArmData* leader = nullptr;
+  for (const ArmData* arm : arms_) {
+    const auto count = static_cast<int>(NetworksOf(*arm).size());
+    if (leader == nullptr || count > networks_) leader = arm, networks_ = count;
+  }
+  if (leader == nullptr) return;
+  const std::set<std::int64_t> networks = NetworksOf(*leader);
+  const auto index = [&](std::int64_t network) {
+    return static_cast<int>(std::distance(networks.begin(), networks.find(network)));
+  };
+  for (const MissionRecord& mission : leader->missions)
+    group_of_scenario_[mission.scenario] = index(mission.network);
+  for (const ArmData* arm : arms_) {
+    const bool takes_turns = NetworksOf(*arm).size() > 1;
+    for (const MissionRecord& mission : arm->missions) {
+      // A scenario that the leader has not flown (yet): its own network, or the first one's.
+      const auto [found, fresh] = group_of_scenario_.try_emplace(mission.scenario, 0);
+      const bool known = networks.count(mission.network) > 0;
+      if (fresh && known) found->second = index(mission.network);
+      if (takes_turns && (!known || found->second != index(mission.network))) networks_disagree_ = true;
+    }
+  }
+  for (const auto& [scenario, group] : group_of_scenario_)
+    unit_of_scenario_.emplace(scenario, static_cast<int>(unit_of_scenario_.size()));
+}
+
+void ResampledArms::Resample(const std::vector<View>& views) {
+  std::vector<int> group_of_unit;
+  for (const auto& [scenario, group] : group_of_scenario_) group_of_unit.push_back(group);
+  const Resampler resampler(group_of_unit, networks_);
+  std::vector<int> missions, networks;
+  std::vector<double> totals;
+  for (int b = 0; b < kResamples; ++b) {
+    resampler.DrawMissions(b, missions);
+    if (networks_ > 1) resampler.DrawNetworks(b, networks);
+    for (const View& view : views) {
+      const auto cell = [&](std::size_t m) -> Resampled& { return cells_.at({view.name, view.metrics[m]}); };
+      view.Sum([&](std::size_t i) { return missions[static_cast<std::size_t>(view.unit[i])]; }, totals);
+      for (std::size_t m = 0; m < view.metrics.size(); ++m)
+        cell(m).missions.push_back(view.ValueOf(m, totals));
+      if (networks_ < 2) continue;
+      view.Sum([&](std::size_t i) { return networks[static_cast<std::size_t>(view.group[i])]; }, totals);
+      for (std::size_t m = 0; m < view.metrics.size(); ++m)
+        cell(m).networks.push_back(view.ValueOf(m, totals));
+    }
+  }
+}
+
+std::vector<std::string> ResampledArms::Missing(const std::vector<Cell>& cells) const {
+  std::set<std::string> missing;
+  for (const Cell& cell : cells)
+    if (cells_.count(cell) == 0) missing.insert(cell.arm);
+  return {missing.begin(), missing.end()};
+}
+
+Resampled ResampledArms::Of(const Quantity& quantity) const {
+  Resampled result;
+  Expression whole;
+  whole.is_quantity = true;
+  whole.quantity = quantity;
+  for (const Cell& cell : CellsOf(whole))
+    result.network_count = std::max(result.network_count, cells_.at(cell).network_count);
+  result.value = ValueOf(quantity, [&](const Cell& cell) { return Value(cell); });
+  const auto all = [&](std::vector<double> Resampled::*level, std::vector<double>& values) {
+    for (std::size_t b = 0; b < static_cast<std::size_t>(kResamples); ++b)
+      values.push_back(ValueOf(quantity, [&](const Cell& cell) {
+        const std::vector<double>& resamples = cells_.at(cell).*level;
+        return resamples.empty() ? kNone : resamples[b];
+      }));
+  };
+  all(&Resampled::missions, result.missions);
+  if (result.network_count > 1) all(&Resampled::networks, result.networks);
+  return result;
+}
+
+const MetricValue& ResampledArms::TableValue(const Cell& cell) const {
+  return metrics_.at(cell.arm).values[cell.metric];
+}
+
+std::vector<ArmData> ResampledArms::FlownBy(int network) const {
+  std::vector<ArmData> part;
+  for (const ArmData* arm : arms_) {
+    ArmData& some = part.emplace_back(ArmData{.stage = arm->stage, .name = arm->name, .missions = {}});
+    for (const MissionRecord& mission : arm->missions)
+      if (group_of_scenario_.at(mission.scenario) == network) some.missions.push_back(mission);
+  }
+  return part;
+}
+
+}  // namespace ed3r

@@ -1,0 +1,111 @@
+#include "studies/claims/setup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "engine/core/check.h"
+#include "engine/rfnn/features.h"
+#include "studies/claims/expression.h"
+#include "studies/metrics/metrics.h"
+
+namespace ed3r {
+namespace {
+
+const ArmData* FindWarmup(std::span<const ArmData> arms) {
+  const auto found = std::find_if(arms.begin(), arms.end(), [](const ArmData& arm) {
+    return arm.name == "warmup" && !arm.missions.empty();
+  });
+  return found == arms.end() ? nullptr : &*found;
+}
+
+bool IsOnline(const ArmData& arm) {
+  const std::vector<std::string>& names = StudyArms();
+  return !arm.missions.empty() && std::find(names.begin(), names.end(), arm.name) != names.end();
+}
+
+Judgement NotThere(const std::string& what) {
+  Judgement judged;
+  judged.why = "not in this run: " + what;
+  return judged;
+}
+
+Judgement Counted(double ours, double paper, double slack, std::string why) {
+  Judgement judged;
+  judged.ours = ours, judged.paper = paper;
+  judged.verdict = std::abs(ours - paper) <= slack ? Verdict::kReproduced : Verdict::kDiffers;
+  judged.why = std::move(why);
+  return judged;
+}
+
+// The fewest of the arms that are claimed.
+Judgement MissionsOnline(const Claim& claim, std::span<const ArmData> arms, double paper) {
+  double fewest = 0;
+  for (const ArmData& arm : arms) {
+    if (!IsOnline(arm)) continue;
+    if (claim.strategy != "all" && claim.strategy.find(arm.name) == std::string::npos) continue;
+    const auto missions = static_cast<double>(arm.missions.size());
+    fewest = fewest == 0 ? missions : std::min(fewest, missions);
+  }
+  if (fewest == 0) return NotThere("the online arms");
+  return Counted(fewest, paper, 0, "missions that every arm has flown");
+}
+
+// 115K: printed to the thousand.
+Judgement Samples(const ArmData& warmup, double paper) {
+  const MetricValue timesteps = ComputeMetrics(warmup)["timesteps_mean"];
+  const auto missions = static_cast<double>(warmup.missions.size());
+  Judgement judged;
+  judged.paper = paper;
+  judged.ours = missions * timesteps.value, judged.lo = missions * timesteps.lo,
+  judged.hi = missions * timesteps.hi;
+  constexpr double kHalfThousand = 500;
+  const bool inside = judged.lo - kHalfThousand <= paper && paper <= judged.hi + kHalfThousand;
+  judged.verdict = inside ? Verdict::kReproduced : Verdict::kDiffers;
+  judged.why = fmt::format("{:.1f} timesteps in each of {:.0f} warm-up missions", timesteps.value, missions);
+  return judged;
+}
+
+Judgement SitesUsed(const ArmData& warmup, std::span<const ArmData> arms, double paper) {
+  std::set<std::int64_t> sites, stations, online_sites, online_stations;
+  for (const MissionRecord& mission : warmup.missions)
+    sites.insert(mission.site), stations.insert(mission.base_station);
+  for (const ArmData& arm : arms) {
+    if (!IsOnline(arm)) continue;
+    for (const MissionRecord& mission : arm.missions)
+      online_sites.insert(mission.site), online_stations.insert(mission.base_station);
+  }
+  if (online_sites.empty()) return NotThere("the online arms");
+  Judgement judged =
+      Counted(static_cast<double>(sites.size()), paper, 0,
+              fmt::format("warm-up at {} sites and {} base station(s), online at {} and {}", sites.size(),
+                          stations.size(), online_sites.size(), online_stations.size()));
+  constexpr std::size_t kSites = 14,
+                        kStations = 2;  // the paper's, "6 out of the 14 ... a single BS location"
+  if (online_sites.size() != kSites || online_stations.size() != kStations || stations.size() != 1)
+    judged.verdict = Verdict::kDiffers;
+  return judged;
+}
+
+}  // namespace
+
+Judgement JudgeSetup(const Claim& claim, std::span<const ArmData> arms) {
+  const auto paper = PaperValueOf(claim);
+  ED3R_CHECK(paper.has_value(), claim.id);
+  if (claim.metric == "missions_online") return MissionsOnline(claim, arms, paper->value);
+  if (claim.metric == "input_features") {
+    const NetworkDesign& design = claim.strategy == "rc-rfnn" ? kRcNetwork : kRobotNetwork;
+    return Counted(design.inputs(), paper->value, 0, "inputs of the network that the engine trains");
+  }
+  const ArmData* warmup = FindWarmup(arms);
+  if (warmup == nullptr) return NotThere("the warm-up");
+  if (claim.metric == "missions_warmup")
+    return Counted(static_cast<double>(warmup->missions.size()), paper->value, 0, "warm-up missions flown");
+  if (claim.metric == "samples") return Samples(*warmup, paper->value);
+  ED3R_CHECK(claim.metric == "sites_used", claim.id);
+  return SitesUsed(*warmup, arms, paper->value);
+}
+
+}  // namespace ed3r

@@ -1,0 +1,217 @@
+#include "studies/claims/verdict_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "studies/paper/csv.h"
+#include "studies/tables/layout.h"
+
+namespace ed3r {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kIdWidth = 5, kClaimWidth = 45, kPaperWidth = 8, kOursWidth = 25, kPWidth = 7,
+              kVerdictWidth = 17;
+
+// "total energy" for "total_energy_kj".
+std::string Spoken(std::string metric) {
+  for (const std::string_view unit : {"_kj", "_pct", "_min"})
+    if (metric.ends_with(unit)) metric.resize(metric.size() - unit.size());
+  std::replace(metric.begin(), metric.end(), '_', ' ');
+  return metric;
+}
+
+std::string Cut(const std::string& text, int width) {
+  if (DisplayWidth(text) <= width) return text;
+  std::string cut;
+  for (const char c : text) {
+    const bool starts_character = (c & 0xC0) != 0x80;
+    if (starts_character && DisplayWidth(cut) == width - 1) break;
+    cut += c;
+  }
+  return cut + "…";
+}
+
+std::string Short(double value, bool sign) {
+  if (std::isnan(value)) return "";
+  const double size = std::abs(value);
+  const int decimals = size >= 1000 ? 0 : size >= 99.95 ? 1 : 2;
+  return sign ? fmt::format("{:+.{}f}", value, decimals) : fmt::format("{:.{}f}", value, decimals);
+}
+
+std::string OursText(const Judgement& judged, bool sign) {
+  if (std::isnan(judged.ours)) return "–";
+  if (std::isnan(judged.lo)) return Short(judged.ours, sign);
+  return fmt::format("{} [{}, {}]", Short(judged.ours, sign), Short(judged.lo, sign), Short(judged.hi, sign));
+}
+
+std::string PText(double p) {
+  if (std::isnan(p)) return "";
+  return p < 0.0001 ? "<0.0001" : fmt::format("{:.{}f}", p, p < 0.01 ? 4 : 3);
+}
+
+// "2r 3d": verdicts of the networks alone.
+std::string NetworksText(const JudgedClaim& claim) {
+  static const std::map<Verdict, char> letters = {
+      {Verdict::kReproduced, 'r'},   {Verdict::kDirectionHolds, 'h'},    {Verdict::kDiffers, 'd'},
+      {Verdict::kNotDecidable, 'u'}, {Verdict::kPaperInconsistent, 'i'}, {Verdict::kNotMeasured, 'n'}};
+  std::string text;
+  for (const auto& [verdict, count] : CountByNetwork(claim))
+    text += fmt::format("{}{}{}", text.empty() ? "" : " ", count, letters.at(verdict));
+  return text;
+}
+
+std::string Line(const std::string& id, const std::string& claim, const std::string& paper,
+                 const std::string& ours, const std::string& p, const std::string& verdict,
+                 const std::string& networks) {
+  return Pad(id, kIdWidth, Align::kLeft) + Pad(claim, kClaimWidth, Align::kLeft) +
+         Pad(paper, kPaperWidth, Align::kRight) + "  " + Pad(ours, kOursWidth, Align::kLeft) +
+         Pad(p, kPWidth, Align::kRight) + "  " + Pad(verdict, kVerdictWidth, Align::kLeft) + ' ' + networks +
+         '\n';
+}
+
+std::string Table(const ClaimStudy& study) {
+  const bool networks = study.networks > 1;
+  std::string text =
+      Line("", "claim", "paper", "ours [95 % interval]", "p Holm", "verdict", networks ? "alone" : "");
+  text += Rule(kTerminalWidth) + '\n';
+  for (const JudgedClaim& judged : study.claims) {
+    if (judged.all.verdict == Verdict::kNotMeasured) continue;
+    const bool order = judged.claim.kind == "order";
+    const std::string paper = order ? Short(judged.all.paper, true) : judged.claim.paper_value;
+    const std::string about = judged.claim.source == "about" ? "~" : "";
+    text += Line(judged.claim.id, ClaimInWords(judged.claim, kClaimWidth - 1), about + paper,
+                 OursText(judged.all, order), PText(judged.all.p_holm),
+                 std::string(NameOf(judged.all.verdict)), NetworksText(judged));
+  }
+  return text;
+}
+
+std::string Summary(const ClaimStudy& study) {
+  std::map<Verdict, int> counts = CountVerdicts(study);
+  std::vector<std::string> parts;
+  for (const Verdict verdict : kVerdicts)
+    if (counts[verdict] > 0) parts.push_back(fmt::format("{} {}", counts[verdict], NameOf(verdict)));
+  return Wrap(fmt::format("{} claims: {}.", study.claims.size(), fmt::join(parts, ", ")), "", kTerminalWidth);
+}
+
+std::string Unmeasured(const ClaimStudy& study) {
+  std::map<std::string, std::vector<std::string>> by_reason;
+  for (const JudgedClaim& judged : study.claims)
+    if (judged.all.verdict == Verdict::kNotMeasured) by_reason[judged.all.why].push_back(judged.claim.id);
+  std::string text;
+  for (const auto& [reason, ids] : by_reason)
+    text += Wrap(fmt::format("{} ({})", fmt::join(ids, " "), reason), "Not measured: ", kTerminalWidth);
+  return text;
+}
+
+std::string Notes(const ClaimStudy& study) {
+  std::string notes = Wrap(
+      "An order shows the difference in its least certain part, + as claimed. Differences are paired over "
+      "scenarios; "
+      "p values are two-sided, corrected by Holm over all directional claims. Why each verdict: "
+      "verdicts.csv.",
+      "", kTerminalWidth);
+  if (study.networks > 1) {
+    notes += Wrap(fmt::format("Intervals and p values include the luck of training ({} networks, Student's "
+                              "t). alone: verdicts by "
+                              "the missions of each network alone, r reproduced, h direction holds, d "
+                              "differs, u not decidable, i "
+                              "paper inconsistent, n not measured.",
+                              study.networks),
+                  "", kTerminalWidth);
+    if (study.networks_disagree)
+      notes += Wrap("Arms took turns among their networks differently: they are paired by scenario only.", "",
+                    kTerminalWidth);
+  } else {
+    notes += Wrap(
+        "One trained network flew each arm: intervals and p values are over missions alone and say nothing "
+        "of the luck "
+        "of training, which may be larger (training.seeds).",
+        "", kTerminalWidth);
+  }
+  return notes;
+}
+
+Json NumberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+std::string NumberOrEmpty(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
+Json ByNetworkJson(const JudgedClaim& judged) {
+  Json counts = Json::object(), verdicts = Json::array(), ours = Json::array();
+  for (const auto& [verdict, count] : CountByNetwork(judged)) counts[std::string(NameOf(verdict))] = count;
+  for (const Judgement& alone : judged.by_network)
+    verdicts.push_back(NameOf(alone.verdict)), ours.push_back(NumberOrNull(alone.ours));
+  return {{"counts", counts}, {"verdicts", verdicts}, {"ours", ours}};
+}
+
+}  // namespace
+
+std::string ClaimInWords(const Claim& claim, int width) {
+  std::string metric = Spoken(claim.metric);
+  std::string what = claim.comparison.empty() ? claim.strategy : claim.comparison;
+  if (claim.comparison.empty()) return Cut(what + ' ' + metric, width);
+  if (what.starts_with("100*(") && what.ends_with(")")) what = what.substr(5, what.size() - 6);
+  const std::string words = claim.metric == "pareto" ? what : metric + ": " + what;
+  return DisplayWidth(words) <= width ? words : Cut('"' + claim.exact_words + '"', width);
+}
+
+std::string VerdictText(const ClaimStudy& study) {
+  if (!study.HasArms()) return "";
+  return TrimLineEnds("What the paper claims\n" + Summary(study) + '\n' + Table(study) + '\n' +
+                      Unmeasured(study) + Notes(study));
+}
+
+Json VerdictJson(const ClaimStudy& study) {
+  Json all = Json::array();
+  if (!study.HasArms()) return all;
+  for (const JudgedClaim& judged : study.claims) {
+    const Claim& claim = judged.claim;
+    all.push_back({{"id", claim.id},
+                   {"where", claim.where},
+                   {"strategy", claim.strategy},
+                   {"metric", claim.metric},
+                   {"kind", claim.kind},
+                   {"claim", claim.comparison.empty() ? claim.strategy : claim.comparison},
+                   {"words", claim.exact_words},
+                   {"paper", NumberOrNull(judged.all.paper)},
+                   {"ours", NumberOrNull(judged.all.ours)},
+                   {"lo", NumberOrNull(judged.all.lo)},
+                   {"hi", NumberOrNull(judged.all.hi)},
+                   {"p", NumberOrNull(judged.all.p)},
+                   {"p_holm", NumberOrNull(judged.all.p_holm)},
+                   {"verdict", NameOf(judged.all.verdict)},
+                   {"why", judged.all.why},
+                   {"by_network", ByNetworkJson(judged)}});
+  }
+  return all;
+}
+
+std::string VerdictCsv(const ClaimStudy& study) {
+  std::string csv = "id,where,strategy,metric,kind,claim,paper,ours,lo,hi,p,p_holm,verdict,why";
+  for (const Verdict verdict : kVerdicts) {
+    std::string column(NameOf(verdict));
+    std::replace(column.begin(), column.end(), ' ', '_');
+    csv += ",networks_" + column;
+  }
+  csv += '\n';
+  if (!study.HasArms()) return csv;
+  for (const JudgedClaim& judged : study.claims) {
+    const Claim& claim = judged.claim;
+    const std::string& what = claim.comparison.empty() ? claim.strategy : claim.comparison;
+    csv +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", claim.id, CsvField(claim.where),
+                    CsvField(claim.strategy), claim.metric, claim.kind, CsvField(what),
+                    NumberOrEmpty(judged.all.paper), NumberOrEmpty(judged.all.ours),
+                    NumberOrEmpty(judged.all.lo), NumberOrEmpty(judged.all.hi), NumberOrEmpty(judged.all.p),
+                    NumberOrEmpty(judged.all.p_holm), NameOf(judged.all.verdict), CsvField(judged.all.why));
+    std::map<Verdict, int> counts = CountByNetwork(judged);
+    for (const Verdict verdict : kVerdicts) csv += fmt::format(",{}", counts[verdict]);
+    csv += '\n';
+  }
+  return csv;
+}
+
+}  // namespace ed3r

@@ -1,0 +1,248 @@
+#include "studies/claims/verdicts.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "studies/claims/evidence.h"
+#include "studies/claims/setup.h"
+#include "studies/statistics/holm.h"
+
+namespace ed3r {
+namespace {
+
+constexpr double kLevel = 0.05;
+
+// An interval that reaches further than this would hold almost any value: half of the paper's, for percentages half
+// of what it or its complement is (a success rate is a failure rate), but 5 points at least.
+double CoarseReach(const Claim& claim, double paper) {
+  constexpr double kShare = 0.5, kPoints = 5;
+  if (claim.unit != "%") return kShare * std::abs(paper);
+  return std::max(kPoints, kShare * std::min(paper, 100 - paper));
+}
+
+struct ParsedClaim {
+  const Claim* claim;
+  std::optional<Expression> expression;  // none for set-up facts and what no run can show
+  std::vector<Cell> cells;
+};
+
+ParsedClaim Parse(const Claim& claim) {
+  if (claim.kind == "setup" || !claim.unmeasured.empty()) return {&claim, std::nullopt, {}};
+  const std::string_view text = claim.comparison.empty() ? claim.strategy : claim.comparison;
+  ParsedClaim parsed{&claim, ParseExpression(text, claim.metric), {}};
+  parsed.cells = CellsOf(*parsed.expression);
+  return parsed;
+}
+
+std::string Deviation(const Judgement& judged) {
+  const double difference = judged.ours - judged.paper;
+  const std::string relative =
+      judged.paper == 0 ? "" : fmt::format(" ({:+.0f} %)", 100 * difference / std::abs(judged.paper));
+  return fmt::format("ours - paper = {:+.3g}{}", difference, relative);
+}
+
+bool AgreesInSize(const Claim& claim, const Judgement& judged) {
+  const auto paper = PaperValueOf(claim);
+  if (!paper) return false;
+  const bool inside =
+      judged.lo - paper->half_unit <= paper->value && paper->value <= judged.hi + paper->half_unit;
+  return inside ||
+         (claim.tolerance > 0 && std::abs(judged.ours - paper->value) <= claim.tolerance + paper->half_unit);
+}
+
+void DecideOrder(const Evidence& evidence, bool similarity, double p_against_holm, Judgement& judged) {
+  judged.why = evidence.detail + (similarity ? "" : " is its least certain part");
+  if (judged.p_holm < kLevel) {
+    judged.verdict = similarity || evidence.sizes_agree ? Verdict::kReproduced : Verdict::kDirectionHolds;
+  } else if (p_against_holm < kLevel) {
+    judged.verdict = Verdict::kDiffers;
+    judged.why += "; the opposite is significant";
+  } else {
+    judged.verdict = Verdict::kNotDecidable;
+  }
+}
+
+void DecideComparison(const Claim& claim, const Evidence& evidence, Judgement& judged) {
+  const bool holds_none = judged.lo <= evidence.neutral && evidence.neutral <= judged.hi;
+  const bool agrees = AgreesInSize(claim, judged);
+  judged.why = Deviation(judged);
+  if (agrees && holds_none) {
+    judged.verdict = Verdict::kNotDecidable;
+    judged.why = "the interval holds the paper's value and no difference at all";
+  } else if (agrees) {
+    judged.verdict = Verdict::kReproduced;
+  } else {
+    judged.verdict = judged.p_holm < kLevel ? Verdict::kDirectionHolds : Verdict::kDiffers;
+  }
+}
+
+void DecideNumber(const Claim& claim, Judgement& judged) {
+  if (!PaperValueOf(claim)) {  // "n/a"
+    judged.verdict = std::isnan(judged.ours) ? Verdict::kReproduced : Verdict::kDiffers;
+    judged.why = "the paper has none";
+    return;
+  }
+  if (std::isnan(judged.ours)) {
+    judged.verdict = Verdict::kNotMeasured;
+    judged.why = "no mission of this run has a value";
+    return;
+  }
+  judged.why = Deviation(judged);
+  if (!AgreesInSize(claim, judged)) {
+    judged.verdict = Verdict::kDiffers;
+    return;
+  }
+  const double reach = std::max(judged.hi - judged.ours, judged.ours - judged.lo);
+  const bool coarse = reach > CoarseReach(claim, judged.paper);
+  judged.verdict = coarse ? Verdict::kNotDecidable : Verdict::kReproduced;
+  if (coarse)
+    judged.why =
+        fmt::format("inside, but the interval reaches {:.0f} % of the value", 100 * reach / judged.paper);
+}
+
+// One round: every claim by the missions of one set of arms.
+class Round {
+ public:
+  Round(const std::vector<ParsedClaim>& parsed, const std::vector<Claim>& claims,
+        std::span<const ArmData> arms, const ResampledArms& resampled)
+      : parsed_(parsed), claims_(claims), data_(arms), arms_(resampled) {}
+
+  std::vector<Judgement> Judge() {
+    Weigh();
+    Correct();
+    for (std::size_t i = 0; i < parsed_.size(); ++i)
+      if (evidence_[i]) Decide(i);
+    return judged_;
+  }
+
+ private:
+  void Weigh() {
+    evidence_.resize(parsed_.size());
+    judged_.resize(parsed_.size());
+    for (std::size_t i = 0; i < parsed_.size(); ++i) {
+      const Claim& claim = *parsed_[i].claim;
+      const std::vector<std::string> missing = arms_.Missing(parsed_[i].cells);
+      if (!claim.unmeasured.empty()) {
+        judged_[i].why = claim.unmeasured;
+      } else if (claim.kind == "setup") {
+        judged_[i] = JudgeSetup(claim, data_);
+      } else if (!missing.empty()) {
+        judged_[i].why = fmt::format("not in this run: {}", fmt::join(missing, ", "));
+      } else {
+        const Expression& expression = *parsed_[i].expression;
+        evidence_[i] = expression.is_quantity ? WeighNumber(claim, expression.quantity, arms_)
+                                              : WeighOrder(claim, expression.formula, arms_, claims_);
+      }
+    }
+  }
+
+  // The family: every different directional claim once; the paper repeats some.
+  void Correct() {
+    std::map<std::string, std::size_t> family;
+    std::vector<double> p_for, p_against;
+    std::vector<std::size_t> member(parsed_.size());
+    for (std::size_t i = 0; i < parsed_.size(); ++i) {
+      if (!evidence_[i] || !evidence_[i]->directional) continue;
+      const Claim& claim = *parsed_[i].claim;
+      const auto [found, fresh] = family.try_emplace(claim.metric + ':' + claim.comparison, p_for.size());
+      member[i] = found->second;
+      if (fresh) p_for.push_back(evidence_[i]->p_for), p_against.push_back(evidence_[i]->p_against);
+    }
+    const std::vector<double> holm_for = HolmAdjust(p_for), holm_against = HolmAdjust(p_against);
+    p_against_holm_.assign(parsed_.size(), kNoNumber);
+    for (std::size_t i = 0; i < parsed_.size(); ++i) {
+      if (!evidence_[i] || !evidence_[i]->directional) continue;
+      judged_[i].p_holm = holm_for[member[i]];
+      p_against_holm_[i] = holm_against[member[i]];
+    }
+  }
+
+  void Decide(std::size_t i) {
+    const Evidence& evidence = *evidence_[i];
+    const Claim& claim = *parsed_[i].claim;
+    Judgement& judged = judged_[i];
+    judged.ours = evidence.ours, judged.lo = evidence.lo, judged.hi = evidence.hi;
+    judged.paper = evidence.paper;
+    judged.p = evidence.p_for;
+    if (claim.kind == "order")
+      DecideOrder(evidence, claim.tolerance > 0, p_against_holm_[i], judged);
+    else if (claim.kind == "ratio")
+      DecideComparison(claim, evidence, judged);
+    else
+      DecideNumber(claim, judged);
+    if (claim.inconsistent.empty() || judged.verdict == Verdict::kNotMeasured) return;
+    judged.verdict = Verdict::kPaperInconsistent;
+    judged.why = claim.inconsistent;
+  }
+
+  const std::vector<ParsedClaim>& parsed_;
+  const std::vector<Claim>& claims_;
+  std::span<const ArmData> data_;
+  const ResampledArms& arms_;
+  std::vector<std::optional<Evidence>> evidence_;
+  std::vector<double> p_against_holm_;
+  std::vector<Judgement> judged_;
+};
+
+}  // namespace
+
+std::string_view NameOf(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kReproduced:
+      return "reproduced";
+    case Verdict::kDirectionHolds:
+      return "direction holds";
+    case Verdict::kDiffers:
+      return "differs";
+    case Verdict::kNotDecidable:
+      return "not decidable";
+    case Verdict::kPaperInconsistent:
+      return "paper inconsistent";
+    case Verdict::kNotMeasured:
+      return "not measured";
+  }
+  return "";
+}
+
+ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData> arms) {
+  std::vector<ParsedClaim> parsed;
+  std::vector<Cell> cells;
+  for (const Claim& claim : claims) {
+    parsed.push_back(Parse(claim));
+    cells.insert(cells.end(), parsed.back().cells.begin(), parsed.back().cells.end());
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+
+  ClaimStudy study;
+  const ResampledArms all(arms, cells);
+  study.networks = all.networks();
+  study.networks_disagree = all.networks_disagree();
+  study.scenarios = static_cast<std::int64_t>(all.scenarios());
+  const std::vector<Judgement> judged = Round(parsed, claims, arms, all).Judge();
+  for (std::size_t i = 0; i < claims.size(); ++i) study.claims.push_back({claims[i], judged[i], {}});
+  if (study.networks < 2) return study;
+  for (int network = 0; network < study.networks; ++network) {
+    const std::vector<ArmData> part = all.FlownBy(network);
+    const std::vector<Judgement> alone = Round(parsed, claims, part, ResampledArms(part, cells)).Judge();
+    for (std::size_t i = 0; i < claims.size(); ++i)
+      if (claims[i].kind != "setup") study.claims[i].by_network.push_back(alone[i]);
+  }
+  return study;
+}
+
+std::map<Verdict, int> CountVerdicts(const ClaimStudy& study) {
+  std::map<Verdict, int> counts;
+  for (const JudgedClaim& judged : study.claims) ++counts[judged.all.verdict];
+  return counts;
+}
+
+std::map<Verdict, int> CountByNetwork(const JudgedClaim& claim) {
+  std::map<Verdict, int> counts;
+  for (const Judgement& judged : claim.by_network) ++counts[judged.verdict];
+  return counts;
+}
+
+}  // namespace ed3r

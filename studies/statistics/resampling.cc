@@ -1,0 +1,103 @@
+#include "studies/statistics/resampling.h"
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/check.h"
+#include "engine/core/random.h"
+#include "studies/statistics/intervals.h"
+
+namespace ed3r {
+namespace {
+
+constexpr std::uint64_t kSeed = 6;  // any; fixed, so that a report is the same every time
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+enum Level : std::uint32_t { kMissions = 0, kNetworks = 1 };
+
+std::vector<double> Known(const std::vector<double>& values) {
+  std::vector<double> known;
+  for (const double value : values)
+    if (std::isfinite(value)) known.push_back(value);
+  if (known.size() < 2 || 2 * known.size() < values.size()) known.clear();
+  return known;
+}
+
+double StandardDeviation(const std::vector<double>& values) {
+  double mean = 0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+// The chance of a deviation this far above 0 or further, times two.
+template <class Distribution>
+double TwiceTail(const Distribution& distribution, double deviation, double sd) {
+  if (sd == 0) return deviation > 0 ? 0 : 1;
+  return std::min(1.0, 2 * boost::math::cdf(boost::math::complement(distribution, deviation / sd)));
+}
+
+}  // namespace
+
+Resampler::Resampler(std::vector<int> group_of_unit, int groups)
+    : units_(group_of_unit.size()), members_(static_cast<std::size_t>(groups)) {
+  for (std::size_t unit = 0; unit < group_of_unit.size(); ++unit) {
+    ED3R_CHECK(0 <= group_of_unit[unit] && group_of_unit[unit] < groups, "a unit belongs to a group");
+    members_[static_cast<std::size_t>(group_of_unit[unit])].push_back(static_cast<int>(unit));
+  }
+}
+
+void Resampler::DrawMissions(int resample, std::vector<int>& count_of_unit) const {
+  count_of_unit.assign(units_, 0);
+  Stream stream(kSeed, static_cast<std::uint32_t>(resample), Purpose::kBootstrap, kMissions);
+  for (const std::vector<int>& members : members_)
+    for (std::size_t i = 0; i < members.size(); ++i)
+      ++count_of_unit[static_cast<std::size_t>(
+          members[stream.Below(static_cast<std::uint32_t>(members.size()))])];
+}
+
+void Resampler::DrawNetworks(int resample, std::vector<int>& count_of_group) const {
+  count_of_group.assign(members_.size(), 0);
+  Stream stream(kSeed, static_cast<std::uint32_t>(resample), Purpose::kBootstrap, kNetworks);
+  for (std::size_t i = 0; i < members_.size(); ++i)
+    ++count_of_group[stream.Below(static_cast<std::uint32_t>(members_.size()))];
+}
+
+Uncertainty UncertaintyOf(const Resampled& number) {
+  Uncertainty result{kNone, kNone, kNone, kNone};
+  std::vector<double> missions = Known(number.missions);
+  if (missions.empty() || !std::isfinite(number.value)) return result;
+  result.sd_missions = StandardDeviation(missions);
+  std::sort(missions.begin(), missions.end());
+  const auto percentile = [&](double share) {
+    return missions[static_cast<std::size_t>(std::llround(share * static_cast<double>(missions.size() - 1)))];
+  };
+  result.lo = percentile(0.025), result.hi = percentile(0.975);
+  const std::vector<double> networks = Known(number.networks);
+  if (number.network_count < 2 || networks.empty()) return result;
+  const double count = number.network_count;
+  result.sd_networks = StandardDeviation(networks) * std::sqrt(count / (count - 1));
+  const double half = StudentT95(count - 1) * result.sd_networks;
+  result.lo = std::min(result.lo, number.value - half);
+  result.hi = std::max(result.hi, number.value + half);
+  return result;
+}
+
+Sides TestAgainst(const Resampled& number, const Uncertainty& uncertainty, double threshold) {
+  if (std::isnan(uncertainty.sd_missions)) return {1, 1};
+  const double deviation = number.value - threshold;
+  const boost::math::normal normal;
+  Sides sides{TwiceTail(normal, deviation, uncertainty.sd_missions),
+              TwiceTail(normal, -deviation, uncertainty.sd_missions)};
+  if (std::isnan(uncertainty.sd_networks)) return sides;
+  const boost::math::students_t student(number.network_count - 1);
+  sides.above = std::max(sides.above, TwiceTail(student, deviation, uncertainty.sd_networks));
+  sides.below = std::max(sides.below, TwiceTail(student, -deviation, uncertainty.sd_networks));
+  return sides;
+}
+
+}  // namespace ed3r
