@@ -9,7 +9,8 @@ import json
 import pathlib
 import sys
 
-import plot_style
+import plot_style  # first: it says what is missing, and chooses matplotlib's backend
+import plot_curves
 import plot_map
 import plot_missions
 import plot_summary
@@ -18,9 +19,9 @@ DRAWINGS = {
     "overview": plot_missions.draw_overview,
     "insights": plot_summary.draw_insights,
     "decisions": plot_missions.draw_decisions,
-    "pareto": plot_summary.draw_pareto,
+    "pareto": plot_curves.draw_pareto,
     "sites": plot_summary.draw_sites,
-    "convergence": plot_summary.draw_convergence,
+    "convergence": plot_curves.draw_convergence,
     "map": plot_map.draw_map,
 }
 

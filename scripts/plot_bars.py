@@ -19,9 +19,18 @@ def paper_marks(axis, x, y):
     axis.plot(x, y, **{**style.PAPER, "ms": 5})
 
 
-def value_rows(axis, arms, run, metric, digits, text=True):
-    """The metric of each arm as a dot with its 95 % interval and the paper's value."""
+def value_rows(axis, arms, run, metric, digits):
+    """The metric of each arm as a dot with its 95 % interval, the paper's value just below.
+
+    Intervals may reach far where few networks flew: the axis ends at 2.2 times the largest value, an arrow shows that
+    the interval goes on.
+    """
     arm_rows(axis, arms, run)
+    values = [arm["metrics"][metric] for arm in arms]
+    largest = max([v[k] for v in values for k in ("mean", "paper") if v[k] is not None], default=1.0)
+    furthest = max([v["hi"] for v in values if v["hi"] is not None], default=largest)
+    end = min(max(largest, furthest), 2.2 * largest) or 1.0
+    axis.set_xlim(0, 1.06 * end)
     axis.xaxis.grid(True)
     for row, arm in enumerate(arms):
         value = arm["metrics"][metric]
@@ -29,11 +38,12 @@ def value_rows(axis, arms, run, metric, digits, text=True):
             axis.text(0, row, "  none", va="center", color=style.FAINT, fontsize=8)
             continue
         if value["lo"] is not None:
-            axis.plot([value["lo"], value["hi"]], [row, row], color=run.colour(arm), lw=2.4, solid_capstyle="butt")
+            axis.plot([value["lo"], min(value["hi"], end)], [row, row], color=run.colour(arm), lw=2.4, alpha=0.55,
+                      solid_capstyle="butt")
+            if value["hi"] > end:
+                axis.plot([end], [row], ">", color=run.colour(arm), ms=5)
         axis.plot([value["mean"]], [row], "o", color=run.colour(arm), ms=6, zorder=5)
-        if text:
-            axis.annotate(f"{value['mean']:.{digits}f}", (value["mean"], row), xytext=(0, 6), textcoords="offset points",
-                          ha="center", fontsize=8.5)
+        axis.annotate(f"{value['mean']:.{digits}f}", (value["mean"], row), xytext=(0, 6), textcoords="offset points",
+                      ha="center", fontsize=8.5)
         if value["paper"] is not None:
-            paper_marks(axis, [value["paper"]], [row])
-    axis.set_xlim(left=0)
+            paper_marks(axis, [value["paper"]], [row + 0.27])

@@ -11,11 +11,11 @@ import json
 import pathlib
 import sys
 
-import matplotlib
-
-matplotlib.use("Agg")
+import plot_style  # first: it says what is missing, and chooses matplotlib's backend
 import matplotlib.pyplot as plt
 import numpy as np
+
+from plot_style import save
 
 STYLE = {
     "paper": ("#c0392b", "s", "paper, as printed"),
@@ -25,13 +25,6 @@ STYLE = {
 }
 MIN_ROWS = 20  # of a bin that is drawn
 BAND_PCT = 8
-
-
-def save(figure, directory, name):
-    for suffix in ("png", "svg"):
-        figure.savefig(directory / f"{name}.{suffix}", dpi=150, bbox_inches="tight",
-                       metadata={"Date": None} if suffix == "svg" else None)
-    plt.close(figure)
 
 
 def bins(assessment, key):
@@ -64,7 +57,7 @@ def draw_residuals(fit, directory):
         if key == "by_climb":
             top.set_ylim(bottom=0)
         for axis in (top, bottom):
-            axis.grid(alpha=0.3)
+            axis.grid(True)
     axes[0, 0].set_ylabel("mean electrical power [W]")
     axes[1, 0].set_ylabel("measured - predicted [W]")
     axes[1, 1].text(0.02, 0.05, "the printed form's residuals in\nvertical flight lie above the panel", fontsize=8,
@@ -104,7 +97,7 @@ def draw_energy(fit, directory):
               ylabel="flights with no larger error [%]")
     right.legend(fontsize=8, loc="upper left")
     for axis in (left, right):
-        axis.grid(alpha=0.3)
+        axis.grid(True)
     figure.tight_layout()
     save(figure, directory, "fit_energy")
 
@@ -128,7 +121,7 @@ def draw_hover(fit, directory):
     low, high = scaling["ci95"]
     axis.set(xlabel="mass [kg]", ylabel=f"hover power at {scaling['reference_density_kgm3']:g} kg/m³ [W]",
              title=f"fitted exponent {scaling['exponent']:.2f} (95 %: {low:.2f} .. {high:.2f}); theory 1.5")
-    axis.grid(alpha=0.3)
+    axis.grid(True)
     axis.legend()
     figure.tight_layout()
     save(figure, directory, "fit_hover")
@@ -142,7 +135,7 @@ def main():
         fit = json.loads((directory / "fit.json").read_text())
     except (OSError, ValueError) as error:
         sys.exit(f"{directory / 'fit.json'}: {error}")
-    plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "svg.hashsalt": "ed3r"})
+    plot_style.use_style()
     draw_residuals(fit, directory)
     draw_energy(fit, directory)
     draw_hover(fit, directory)

@@ -7,21 +7,23 @@ from matplotlib.colors import LightSource
 
 import plot_style as style
 
+MARGIN_M = 30.0
 OUTCOMES = {"success": "success", "false-positive": "false positive", "battery-depleted": "battery depleted"}
 
 
 def draw_map(run, figure):
     missions, world = run.data["missions_shown"], run.data["world"]
     columns = len(missions)
-    canvas, axes = plt.subplots(1, columns, figsize=(3.55 * columns + 0.6, 4.1), sharey=True, squeeze=False)
-    extent = map_extent(missions, world)
+    canvas, axes = plt.subplots(1, columns, figsize=(3.55 * columns + 0.6, 4.1), squeeze=False)
     colours = plt.get_cmap("plasma")
     for axis, mission in zip(axes[0], missions):
         if world:
             draw_ground(axis, world)
             draw_places(axis, world, mission)
+        axis.locator_params(nbins=6)
         draw_path(axis, mission, colours)
-        axis.set(xlim=extent[:2], ylim=extent[2:], aspect="equal", xlabel="east [m]")
+        west, south, side = window(mission, world)
+        axis.set(xlim=(west, west + side), ylim=(south, south + side), aspect="equal", xlabel="east [m]")
         axis.set_title(f"{OUTCOMES[mission['outcome']]}: {mission['label']}, mission {mission['mission']}\n"
                        f"{mission['duration_min']:.1f} min, {mission['energy_kj']:.1f} kJ, {len(mission['x_m']) - 1} timesteps",
                        fontsize=9)
@@ -36,12 +38,20 @@ def draw_map(run, figure):
     return canvas
 
 
-def map_extent(missions, world):
+def window(mission, world):
+    """West and south edge and side of a square that holds the path, the fire and the base station."""
+    x, y = list(mission["x_m"]), list(mission["y_m"])
     if world:
-        return 0, world["size_m"][0], 0, world["size_m"][1]
-    x = np.concatenate([m["x_m"] for m in missions])
-    y = np.concatenate([m["y_m"] for m in missions])
-    return x.min() - 20, x.max() + 20, y.min() - 20, y.max() + 20
+        for place in (world["sites"][mission["site"]], world["base_stations"][mission["base_station"]]):
+            x.append(place["x_m"])
+            y.append(place["y_m"])
+    side = max(np.ptp(x), np.ptp(y), 120.0) + 2 * MARGIN_M
+    west, south = 0.5 * (min(x) + max(x) - side), 0.5 * (min(y) + max(y) - side)
+    if world:
+        side = min(side, *world["size_m"][:2])
+        west = min(max(west, 0.0), world["size_m"][0] - side)
+        south = min(max(south, 0.0), world["size_m"][1] - side)
+    return west, south, side
 
 
 def draw_ground(axis, world):
@@ -57,7 +67,7 @@ def draw_ground(axis, world):
     if len(trees):
         axis.add_collection(EllipseCollection(2 * trees[:, 2], 2 * trees[:, 2], np.zeros(len(trees)), units="x",
                                               offsets=trees[:, :2], transOffset=axis.transData, facecolor="#5f7f5a",
-                                              alpha=0.45, lw=0, zorder=2, rasterized=True))
+                                              alpha=0.32, lw=0, zorder=2, rasterized=True))
 
 
 def draw_places(axis, world, mission):
@@ -79,5 +89,8 @@ def draw_path(axis, mission, colours):
     scs = np.array([np.nan if s is None else s for s in mission["scs_pct"]], dtype=float)
     axis.scatter(path[1:, 0], path[1:, 1], c=scs[1:], cmap=colours, vmin=0, vmax=100, s=16, edgecolors="white", lw=0.3,
                  zorder=6)
-    axis.plot(*path[0], marker="o", ms=10, mfc="none", mec=style.INK, mew=1.6, zorder=8)
-    axis.plot(*path[-1], marker="X", ms=9, mfc=style.INK, mec="white", mew=0.9, zorder=8)
+    for point, marker, text in ((path[0], "o", "start"), (path[-1], "s", "end")):
+        axis.plot(*point, marker=marker, ms=11, mfc="none", mec="white", mew=3.2, zorder=8)
+        axis.plot(*point, marker=marker, ms=11, mfc="none", mec=style.INK, mew=1.6, zorder=9)
+        axis.annotate(text, point, xytext=(9, 5), textcoords="offset points", fontsize=8.5, zorder=10,
+                      bbox=dict(boxstyle="round,pad=0.1", fc="white", ec="none", alpha=0.7))

@@ -34,7 +34,7 @@ def draw_overview(run, figure):
             draw_strip(axis, run.colour(arm), arm, i * (width + gap), width, name, metric, unit, digits)
         axis.set_ylabel(label)
         axis.yaxis.grid(True)
-        axis.set_ylim(bottom=0) if name == "energy_kj" else None
+        set_limits(axis, arms, name)
         last_warmup = len(figure["warmups"])
         if last_warmup:
             axis.axvline(last_warmup * (width + gap) - gap / 2, color=style.INK, lw=1.1, ls="--")
@@ -42,7 +42,7 @@ def draw_overview(run, figure):
             axis.axvline(i * (width + gap) - gap / 2, color=style.FAINT, lw=0.8, ls=":")
     top, bottom = axes[0, 0], axes[-1, 0]
     for i, arm in enumerate(arms):
-        eta = f", η_min {arm['eta_min_pct']:g} %" if arm["strategy"] == "ed3r" and arm["eta_min_pct"] else ""
+        eta = f", $\\eta_{{min}}$ {arm['eta_min_pct']:g} %" if arm["strategy"] == "ed3r" and arm["eta_min_pct"] else ""
         drawn = shown_missions(arm).stop
         count = f"{drawn} of {arm['missions']}" if drawn < arm["missions"] else f"{drawn}"
         top.text(i * (width + gap) + width / 2, 1.04, arm["label"] + eta, ha="center", va="bottom", fontweight="bold",
@@ -54,11 +54,20 @@ def draw_overview(run, figure):
     handles = [Line2D([], [], marker="o", ls="none", ms=4, color=style.FAINT, label="mission"),
                Line2D([], [], marker="o", ls="none", ms=4, mfc="none", color=style.FAINT, label="battery depleted"),
                Line2D([], [], color=style.INK, lw=2, label="mean of all missions, 95 %"),
-               Line2D([], [], label="paper", **{k: v for k, v in style.PAPER.items() if k != "zorder"})]
+               Line2D([], [], label="paper", **style.PAPER)]
     canvas.legend(handles=handles, loc="lower center", ncol=4, bbox_to_anchor=(0.5, -0.035))
     canvas.align_ylabels(axes[:, 0])
     canvas.tight_layout(h_pad=0.8)
     return canvas
+
+
+def set_limits(axis, arms, name):
+    """The range of the missions, not of the intervals, which may be anything where few networks flew."""
+    values = np.concatenate([column(arm, name)[shown_missions(arm)] for arm in arms])
+    low, high = np.nanmin(values), np.nanmax(values)
+    low = 0 if name == "energy_kj" else low
+    pad = 0.08 * max(high - low, 1e-6)
+    axis.set_ylim(low - (0 if name == "energy_kj" else pad), high + pad)
 
 
 def draw_strip(axis, colour, arm, left, width, name, metric, unit, digits):
@@ -78,7 +87,7 @@ def draw_strip(axis, colour, arm, left, width, name, metric, unit, digits):
                   transform=axis.get_xaxis_transform())
         return
     if value["lo"] is not None:
-        axis.fill_between([left, left + width], value["lo"], value["hi"], color=style.INK, alpha=0.18, lw=0, zorder=3)
+        axis.fill_between([left, left + width], value["lo"], value["hi"], color=style.INK, alpha=0.13, lw=0, zorder=3)
     axis.plot([left, left + width], [value["mean"]] * 2, color=style.INK, lw=1.8, zorder=4)
     axis.annotate(f"{value['mean']:.{digits}f} {unit}", (left + 0.02 * width, value["mean"]), xytext=(0, 3),
                   textcoords="offset points", fontsize=8.5, fontweight="bold", zorder=7,
@@ -101,7 +110,7 @@ def draw_decisions(run, figure):
             mean.text(1.0, row, f"longest {longest:.1f}", ha="right", va="center", fontsize=8, color=style.FAINT,
                       transform=mean.get_yaxis_transform())
     mean.set_yticks([])
-    mean.set_xlim(right=mean.get_xlim()[1] * 1.75)
+    mean.set_xlim(right=mean.get_xlim()[1] * 1.8)
     mean.set(xlabel="duration of a mission [min]")
     mean.set_title("mean, 95 %, and longest")
     draw_ended(ended, arms, run)

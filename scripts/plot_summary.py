@@ -1,7 +1,7 @@
-"""Figures whose points are arms: insights, the Pareto plot, success by site, convergence."""
+"""Insights (where the energy goes, how missions end) and success by site."""
 
 import matplotlib.pyplot as plt
-import numpy as np
+from matplotlib.colors import LinearSegmentedColormap
 
 import plot_style as style
 from plot_bars import arm_rows, paper_marks, value_rows
@@ -9,7 +9,7 @@ from plot_bars import arm_rows, paper_marks, value_rows
 
 def draw_insights(run, figure):
     arms = run.arms(figure["arms"])
-    canvas, axes = plt.subplots(2, 2, figsize=(style.WIDTH_IN, 2 * max(2.4, 1.1 + 0.36 * len(arms))),
+    canvas, axes = plt.subplots(2, 2, figsize=(style.WIDTH_IN, 2 * max(1.7, 1.1 + 0.36 * len(arms))),
                                 gridspec_kw={"width_ratios": [1, 1.1]})
     value_rows(axes[0, 0], arms, run, "movement_energy_kj", 1)
     axes[0, 0].set_title("movement and hovering")
@@ -70,48 +70,6 @@ def draw_outcomes(axis, arms):
                 handlelength=1, columnspacing=0.9, handletextpad=0.4)
 
 
-def draw_pareto(run, figure):
-    arms = [arm for arm in run.arms(figure["arms"])]
-    canvas, axis = plt.subplots(figsize=(8.2, 5.4))
-    points = []
-    for arm in arms:
-        energy, success = arm["metrics"]["total_energy_kj"], arm["metrics"]["msr_pct"]
-        colour = run.colour(arm)
-        points.append((energy["mean"], success["mean"], arm))
-        if energy["lo"] is not None and success["lo"] is not None:
-            axis.plot([energy["lo"], energy["hi"]], [success["mean"]] * 2, color=colour, lw=1.3, alpha=0.8)
-            axis.plot([energy["mean"]] * 2, [success["lo"], success["hi"]], color=colour, lw=1.3, alpha=0.8)
-        axis.plot([energy["mean"]], [success["mean"]], "o", color=colour, ms=8, zorder=5)
-        if energy["paper"] is not None and success["paper"] is not None:
-            axis.plot([energy["mean"], energy["paper"]], [success["mean"], success["paper"]], color=style.FAINT, lw=0.6,
-                      ls=":", zorder=1)
-            axis.plot([energy["paper"]], [success["paper"]], **{**style.PAPER, "mec": colour, "ms": 7})
-    frontier = pareto_frontier([(e, s) for e, s, _ in points])
-    axis.plot([e for e, _ in frontier], [s for _, s in frontier], color=style.INK, lw=1.4, alpha=0.55, zorder=2)
-    label_points(axis, points, run)
-    axis.set(xlabel="mean energy of a mission [kJ]", ylabel="mission success rate [%]")
-    axis.grid(True)
-    axis.margins(0.08)
-    canvas.tight_layout()
-    return canvas
-
-
-def pareto_frontier(points):
-    """Points that no other beats in both, by energy."""
-    best, frontier = -np.inf, []
-    for energy, success in sorted(points, key=lambda p: (p[0], -p[1])):
-        if success > best:
-            frontier.append((energy, success))
-            best = success
-    return frontier
-
-
-def label_points(axis, points, run):
-    for energy, success, arm in points:
-        axis.annotate(arm["label"], (energy, success), xytext=(7, 6), textcoords="offset points", color=run.colour(arm),
-                      fontweight="bold", fontsize=9)
-
-
 def draw_sites(run, figure):
     arms = run.arms(figure["arms"])
     sites = {}
@@ -121,7 +79,7 @@ def draw_sites(run, figure):
     order = sorted(sites, key=lambda site: (not sites[site], site))
     known = sum(sites.values())
     canvas, axis = plt.subplots(figsize=(style.WIDTH_IN, 1.5 + 0.42 * len(arms)))
-    colours = plt.get_cmap("cividis")
+    colours = LinearSegmentedColormap.from_list("success", ["#c1591c", "#f6f1e7", "#4a93c4"])
     place = {site: i + (0.35 if i >= known else 0) for i, site in enumerate(order)}
     for row, arm in enumerate(arms):
         for site in arm["sites"]:
@@ -132,7 +90,7 @@ def draw_sites(run, figure):
     arm_rows(axis, arms, run)
     names = [place_["name"] for place_ in run.data["world"]["sites"]] if run.data["world"] else []
     axis.set_xticks([place[site] for site in order])
-    axis.set_xticklabels([names[site] if site < len(names) else str(site + 1) for site in order], rotation=40, ha="right",
+    axis.set_xticklabels([names[site] if site < len(names) else str(site + 1) for site in order], rotation=40, ha="right", rotation_mode="anchor",
                          fontsize=8)
     axis.tick_params(axis="x", length=0)
     for spine in axis.spines.values():
@@ -152,7 +110,7 @@ def draw_sites(run, figure):
 
 def cell(axis, x, row, percent, colours):
     axis.add_patch(plt.Rectangle((x - 0.47, row - 0.45), 0.94, 0.9, color=colours(percent / 100), lw=0))
-    axis.text(x, row, f"{percent:.0f}", ha="center", va="center", fontsize=8.5, color="white" if percent < 55 else style.INK)
+    axis.text(x, row, f"{percent:.0f}", ha="center", va="center", fontsize=8.5, color="white" if percent < 18 else style.INK)
 
 
 def pooled_cell(axis, x, row, pooled):
@@ -160,40 +118,3 @@ def pooled_cell(axis, x, row, pooled):
     if pooled["lo"] is not None:
         axis.text(x, row + 0.03, f"{pooled['lo']:.0f}–{pooled['hi']:.0f}", ha="center", va="top", fontsize=7.5,
                   color=style.FAINT)
-
-
-def draw_convergence(run, figure):
-    arms = run.arms(figure["arms"])
-    canvas, axes = plt.subplots(1, 2, figsize=(style.WIDTH_IN, 4.0), sharex=True)
-    for axis, metric, label in ((axes[0], "total_energy_kj", "mean energy: half width of the 95 % interval [kJ]"),
-                                (axes[1], "msr_pct", "success rate: half width of the 95 % interval [points]")):
-        ends, widest = [], []
-        for arm in arms:
-            n = np.array(arm["convergence"]["missions"], dtype=float)
-            width = np.array([np.nan if w is None else w for w in arm["convergence"][metric]], dtype=float)
-            axis.plot(n, width, color=run.colour(arm), lw=1.5)
-            if np.isfinite(width).any():
-                ends.append((width[-1], n[-1], arm))
-                widest.append(np.nanmedian(width * np.sqrt(n)))
-        if widest:
-            n = np.array([10.0, max(e[1] for e in ends)])
-            axis.plot(n, np.median(widest) / np.sqrt(n), color=style.FAINT, lw=3, alpha=0.25, zorder=1)
-        axis.set(xscale="log", yscale="log", xlabel="missions of an arm", ylabel=label)
-        axis.grid(True, which="major")
-        label_ends(axis, ends, run)
-    canvas.tight_layout(w_pad=2.5)
-    return canvas
-
-
-def label_ends(axis, ends, run):
-    """Names at the right ends of the lines, pushed apart where they would overlap."""
-    axis.figure.canvas.draw()
-    ends = sorted((e for e in ends if np.isfinite(e[0])), key=lambda e: e[0])
-    below = -np.inf
-    for width, n, arm in ends:
-        y = axis.transData.transform((n, width))[1]
-        y = max(y, below + 12 * axis.figure.dpi / 72 * 0.85)
-        below = y
-        x_axes = axis.transAxes.inverted().transform((axis.transData.transform((n, width))[0], y))
-        axis.annotate(arm["label"], (n, width), xytext=(1.02, x_axes[1]), textcoords="axes fraction", va="center",
-                      fontsize=8, color=run.colour(arm), fontweight="bold", annotation_clip=False)

@@ -1,6 +1,7 @@
 // Commands that read run directories: status, report, digest, merge.
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -88,6 +89,7 @@ int MakeReportOf(const ReportOptions& options) {
   else
     fmt::print("{}\n{}: index.html, report.txt, report.json, metrics.csv, {} tables, {} figures\n",
                ReportText(report), folder.out, report.tables.size(), written.figures);
+  std::fflush(stdout);  // before what goes to the other stream
   if (!written.note.empty()) fmt::print(stderr, "note: {}\n", written.note);
   if (written.plot_error.empty()) return kDone;
   fmt::print(stderr, "figures: drawing failed: {}\n", written.plot_error);

@@ -63,7 +63,7 @@ DrawResult DrawFigures(const std::string& folder) {
     return {Drawing::kUnavailable,
             fmt::format("{} is not there; set ED3R_SCRIPTS to its folder", script.string())};
   const fs::path errors = fs::path(folder) / "plot.log";
-  const int status = RunProgram({python, script.string(), folder}, errors);
+  const int status = RunProgram({python, "-B", script.string(), folder}, errors);
   const std::string last = LastLine(errors);
   std::error_code ignored;
   if (status != 0 && status != kNoMatplotlib && status > 0)

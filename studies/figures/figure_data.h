@@ -1,6 +1,6 @@
 // Everything that figures show, as one JSON document (DIR/report/figures/data.json), so that anyone can draw them anew.
 //
-//   format            2-digit number of this layout, 1
+//   format            of this layout: 1
 //   name              of the sweep
 //   units             what each column of a mission is, with its unit
 //   arms              list, in plan order:

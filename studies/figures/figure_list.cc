@@ -164,9 +164,9 @@ void AddRunFigures(std::span<const ArmData> arms, const Indices& drawn, std::siz
     figures.push_back(
         {"map",
          "map",
-         "Three missions seen from above",
+         "Missions seen from above",
          "For each outcome the mission of the median duration. Dots are timesteps, coloured by their stable "
-         "confidence score; the ring is the start, the cross the end.",
+         "confidence score; RC is the base station of the remote controller.",
          {},
          {}});
   Indices long_enough;
@@ -178,7 +178,8 @@ void AddRunFigures(std::span<const ArmData> arms, const Indices& drawn, std::siz
          "convergence",
          "How sure after how many missions",
          "Half the width of the 95 % interval of mean energy and of the success rate, computed from the "
-         "first n missions of each arm. The grey line falls as one over the square root of n; where the "
+         "first n missions of each arm, once all of its networks have flown. The grey line falls as one over "
+         "the square root of n; where the "
          "curves stay above it, the luck of training does not average out with more missions.",
          long_enough,
          {}});

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
+#include <span>
 
 #include "studies/figures/figure_list.h"
 #include "studies/metrics/metrics.h"
@@ -100,6 +102,12 @@ std::vector<std::size_t> SampleSizes(std::size_t all) {
   return sizes;
 }
 
+std::set<std::int64_t> NetworksOf(std::span<const MissionRecord> missions) {
+  std::set<std::int64_t> networks;
+  for (const MissionRecord& mission : missions) networks.insert(mission.network);
+  return networks;
+}
+
 }  // namespace
 
 Json Rounded(double value, int decimals) {
@@ -154,7 +162,10 @@ Json PooledSuccess(const ArmData& arm, bool known) {
 Json Convergence(const ArmData& arm) {
   Json convergence = {
       {"missions", Json::array()}, {"total_energy_kj", Json::array()}, {"msr_pct", Json::array()}};
+  const std::size_t networks = NetworksOf(arm.missions).size();
   for (const std::size_t n : SampleSizes(arm.missions.size())) {
+    // A sample that one network has not entered yet knows less than it seems to.
+    if (NetworksOf({arm.missions.data(), n}).size() < networks) continue;
     ArmData first{.stage = arm.stage, .name = arm.name, .missions = {}};
     first.missions.assign(arm.missions.begin(), arm.missions.begin() + static_cast<std::ptrdiff_t>(n));
     const ArmMetrics metrics = ComputeMetrics(first);

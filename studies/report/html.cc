@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "studies/paper/claims.h"
+#include "studies/report/page_parts.h"
 #include "studies/report/page_style.h"
 #include "studies/tables/layout.h"
 #include "studies/tables/paper_cell.h"
@@ -43,10 +44,9 @@ std::string WhatWasRun(const Provenance& p) {
   if (!p.sessions.empty()) machine = MachineText(p.sessions.back());
   if (p.sessions.size() > 1) machine += fmt::format(" (last of {} sessions)", p.sessions.size());
   const std::string when =
-      p.sessions.empty()
-          ? ""
-          : p.sessions.front().begun_utc + " to " +
-                (p.sessions.back().ended_utc.empty() ? "now" : p.sessions.back().ended_utc) + " UTC";
+      p.sessions.empty() ? ""
+                         : p.sessions.front().begun_utc + " to " +
+                               (p.sessions.back().ended_utc.empty() ? "now" : p.sessions.back().ended_utc);
   return "<section id=\"run\"><h2>What was run</h2>\n<dl>\n" + Fact("command", Code(p.command)) +
          Fact("sweep", HtmlText(p.sweep)) + Fact("seed", p.seed) + Fact("missions", missions) +
          Fact("flown time",
@@ -148,16 +148,17 @@ std::string ReportPage(const PageInputs& inputs) {
       "content=\"width=device-width, initial-scale=1\">\n<title>{0} – ED³R "
       "report</title>\n<style>{1}</style></head>\n"
       "<body>\n<header><h1>{0}</h1><nav><a href=\"#run\">What was run</a> <a href=\"#headline\">Results</a> "
-      "<a "
+      "{2}<a "
       "href=\"#tables\">Tables</a> <a href=\"#figures\">Figures</a></nav></header>\n",
-      HtmlText(report.name), kPageStyle);
+      HtmlText(report.name), kPageStyle, report.claims.HasArms() ? "<a href=\"#verdicts\">Claims</a> " : "");
   html += WhatWasRun(inputs.provenance);
   html += "<section id=\"headline\"><h2>Results</h2>\n";
   if (report.tables.empty())
     html += "<p class=\"note\">No missions yet.</p>\n";
   else
     html += TableHtml(report.tables.front()) + TableKey();
-  html += "</section>\n<section id=\"tables\"><h2>Tables</h2>\n";
+  html += "</section>\n" + VerdictSection(report.claims);
+  html += "<section id=\"tables\"><h2>Tables</h2>\n";
   for (std::size_t t = 1; t < report.tables.size(); ++t) html += TableHtml(report.tables[t]);
   html += fmt::format(
       "<p class=\"files\">Every metric of every arm: <a href=\"report.txt\">report.txt</a> <a "

@@ -20,7 +20,4 @@ struct PageInputs {
 
 std::string ReportPage(const PageInputs& inputs);
 
-// &, <, > and quotes as entities.
-std::string HtmlText(std::string_view text);
-
 }  // namespace ed3r

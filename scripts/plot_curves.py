@@ -1,0 +1,140 @@
+"""The Pareto plot and convergence: arms as points and lines that carry their names."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+import plot_style as style
+
+
+def draw_pareto(run, figure):
+    arms = run.arms(figure["arms"])
+    canvas, axis = plt.subplots(figsize=(8.4, 5.6))
+    points, papers = [], []
+    for arm in arms:
+        energy, success = arm["metrics"]["total_energy_kj"], arm["metrics"]["msr_pct"]
+        points.append((energy["mean"], success["mean"]))
+        draw_cross(axis, energy, success, run.colour(arm))
+        if energy["paper"] is not None and success["paper"] is not None:
+            papers.append((energy["paper"], success["paper"]))
+            axis.plot([energy["mean"], energy["paper"]], [success["mean"], success["paper"]], color=run.colour(arm), lw=0.8,
+                      ls=(0, (2, 2)), alpha=0.7, zorder=1)
+            axis.plot([energy["paper"]], [success["paper"]], **{**style.PAPER, "mec": run.colour(arm), "ms": 7, "mew": 1.5})
+    frontier = pareto_frontier(points)
+    axis.step([e for e, _ in frontier], [s for _, s in frontier], where="post", color=style.INK, lw=1.2, alpha=0.5, zorder=2)
+    frame_points(axis, points + papers)
+    axis.set(xlabel="mean energy of a mission [kJ]", ylabel="mission success rate [%]")
+    axis.grid(True)
+    handles = [Line2D([], [], marker="o", color=style.FAINT, label="ours, 95 %")]
+    if papers:
+        handles.append(Line2D([], [], label="paper", **style.PAPER))
+    if len(frontier) > 1:
+        handles.append(Line2D([], [], color=style.INK, lw=1.2, alpha=0.5, label="our Pareto frontier"))
+    axis.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 1.08), ncol=3)
+    canvas.tight_layout()
+    place_labels(axis, [(arm["label"], run.colour(arm)) for arm in arms], points, points + papers)
+    return canvas
+
+
+def draw_cross(axis, energy, success, colour):
+    if energy["lo"] is not None and success["lo"] is not None:
+        axis.plot([energy["lo"], energy["hi"]], [success["mean"]] * 2, color=colour, lw=1.6, alpha=0.5, zorder=3)
+        axis.plot([energy["mean"]] * 2, [success["lo"], success["hi"]], color=colour, lw=1.6, alpha=0.5, zorder=3)
+    axis.plot([energy["mean"]], [success["mean"]], "o", color=colour, ms=8, zorder=5)
+
+
+def frame_points(axis, points):
+    """Limits around the points; intervals that reach further run into the frame."""
+    x, y = np.array(points).T
+    pad_x, pad_y = max(0.14 * np.ptp(x), 1.0), max(0.14 * np.ptp(y), 2.0)
+    axis.set_xlim(max(0, x.min() - pad_x), x.max() + pad_x)
+    axis.set_ylim(max(0, y.min() - pad_y), min(100.8, y.max() + pad_y))
+
+
+def pareto_frontier(points):
+    """Points that no other beats in both, by energy."""
+    best, frontier = -np.inf, []
+    for energy, success in sorted(points, key=lambda p: (p[0], -p[1])):
+        if success > best:
+            frontier.append((energy, success))
+            best = success
+    return frontier
+
+
+def place_labels(axis, labels, at, marks):
+    """Writes each label beside its point, on the side where it covers the fewest marks and labels."""
+    axis.figure.canvas.draw()
+    pixels = axis.transData.transform(np.array(marks))
+    frame, taken = axis.get_window_extent(), []
+    sides = [(10, 8, "left"), (10, -15, "left"), (-10, 8, "right"), (-10, -15, "right"), (0, 13, "center"), (0, -20, "center"),
+             (13, -3, "left"), (-13, -3, "right"), (12, 24, "left"), (-12, 24, "right"), (12, -32, "left"), (-12, -32, "right")]
+    for (text, colour), point in zip(labels, at):
+        best = None
+        for i, (dx, dy, side) in enumerate(sides):
+            label = axis.annotate(text, point, xytext=(dx, dy), textcoords="offset points", ha=side, color=colour,
+                                  fontweight="bold", fontsize=9, zorder=8)
+            box = label.get_window_extent().padded(2)
+            covered = sum(box.overlaps(other) for other in taken) + sum(box.contains(*p) for p in pixels)
+            outside = not (frame.contains(box.x0, box.y0) and frame.contains(box.x1, box.y1))
+            cost = 10 * covered + 20 * outside + i * 0.1
+            label.remove()
+            if best is None or cost < best[0]:
+                best = (cost, dx, dy, side, box)
+        _, dx, dy, side, box = best
+        taken.append(box)
+        far = abs(dy) > 22
+        axis.annotate(text, point, xytext=(dx, dy), textcoords="offset points", ha=side, color=colour, fontweight="bold",
+                      fontsize=9, zorder=8, arrowprops=dict(arrowstyle="-", color=colour, lw=0.6) if far else None)
+
+
+def draw_convergence(run, figure):
+    arms = run.arms(figure["arms"])
+    canvas, axes = plt.subplots(1, 2, figsize=(style.WIDTH_IN, 4.2), sharex=True)
+    for axis, metric, title in ((axes[0], "total_energy_kj", "mean energy: 95 % interval, ± [kJ]"),
+                                (axes[1], "msr_pct", "success rate: 95 % interval, ± [points]")):
+        ends, level = [], []
+        for arm in arms:
+            n = np.array(arm["convergence"]["missions"], dtype=float)
+            width = np.array([np.nan if w is None else w for w in arm["convergence"][metric]], dtype=float)
+            if not np.isfinite(width).any():
+                continue
+            axis.plot(n, width, color=run.colour(arm), lw=1.6)
+            ends.append((width[-1], n[-1], arm))
+            level.append(np.nanmedian(width * np.sqrt(n)))
+        axis.set(xscale="log", yscale="log", xlabel="missions of an arm")
+        axis.set_title(title)
+        if level:
+            n = np.array(axis.get_xlim())
+            axis.plot(n, np.median(level) / np.sqrt(n), color=style.FAINT, lw=5, alpha=0.18, zorder=1, scalex=False, scaley=False)
+        plain_ticks(axis)
+        axis.grid(True, which="major")
+    canvas.tight_layout(w_pad=8.0, rect=(0, 0, 0.92, 1))
+    for axis, metric in zip(axes, ("total_energy_kj", "msr_pct")):
+        label_ends(axis, [(arm["convergence"][metric][-1], arm["convergence"]["missions"][-1], arm) for arm in arms
+                          if arm["convergence"][metric] and arm["convergence"][metric][-1] is not None], run)
+    return canvas
+
+
+def plain_ticks(axis):
+    """1, 2, 5, 10, 20, ... on logarithmic axes."""
+    for side in (axis.xaxis, axis.yaxis):
+        side.set_major_locator(LogLocator(base=10, subs=(1, 2, 5), numticks=12))
+        side.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        side.set_minor_formatter(NullFormatter())
+
+
+def label_ends(axis, ends, run):
+    """Names at the right ends of the lines, pushed apart where they would overlap, within the axes."""
+    axis.figure.canvas.draw()
+    to_axes = axis.transData + axis.transAxes.inverted()
+    ends = sorted(ends, key=lambda e: e[0])
+    step = 12.5 / 72 * axis.figure.dpi / axis.get_window_extent().height
+    heights = [to_axes.transform((n, width))[1] for width, n, _ in ends]
+    for i in range(1, len(heights)):
+        heights[i] = max(heights[i], heights[i - 1] + step)
+    for i in range(len(heights) - 1, -1, -1):
+        heights[i] = min(heights[i], 1.0 - step * (len(heights) - 1 - i))
+    for (_, _, arm), height in zip(ends, heights):
+        axis.text(1.02, height, arm["label"], transform=axis.transAxes, va="center", fontsize=8.5, color=run.colour(arm),
+                  fontweight="bold")

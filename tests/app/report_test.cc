@@ -1,0 +1,140 @@
+// `ed3r report` as its users meet it: what it leaves in a folder, with pictures and without.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/app/command.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ReportTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scratch_ = new ScratchFolder;
+    const CommandResult flown = Ed3r(fmt::format("run {}/sweeps/rbs.yaml --missions 24 --quiet --out {}",
+                                                 ED3R_SOURCE_DIR, (*scratch_ / "run").string()));
+    ASSERT_EQ(flown.status, 0) << flown.err;
+  }
+  static void TearDownTestSuite() { delete scratch_; }
+
+  // Reports the run of this suite into a folder of this test.
+  CommandResult Report(const std::string& options, const std::string& environment = "") {
+    return Ed3r(fmt::format("report {} --out {} {}", (*scratch_ / "run").string(), Out().string(), options),
+                environment);
+  }
+  fs::path Out() const { return out_ / "report"; }
+
+  // A folder with a plot.py of this content.
+  fs::path Script(const std::string& content) {
+    fs::create_directories(out_ / "scripts");
+    std::ofstream(out_ / "scripts" / "plot.py") << content;
+    return out_ / "scripts";
+  }
+
+  static bool HasMatplotlib() {
+    return std::system("/usr/bin/python3 -c 'import matplotlib' >/dev/null 2>&1") == 0;
+  }
+
+  static ScratchFolder* scratch_;
+  ScratchFolder out_;
+};
+ScratchFolder* ReportTest::scratch_ = nullptr;
+
+TEST_F(ReportTest, DrawsWhatItsDataList) {
+  if (!HasMatplotlib()) GTEST_SKIP() << "matplotlib is not installed";
+  const CommandResult result = Report("");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_NE(result.out.find(Out().string() + ": index.html"), std::string::npos);
+  const auto data = nlohmann::json::parse(ReadAll(Out() / "figures" / "data.json"));
+  const std::string page = ReadAll(Out() / "index.html");
+  ASSERT_GE(data.at("figures").size(), 6u);
+  for (const auto& figure : data.at("figures")) {
+    const std::string id = figure.at("id");
+    EXPECT_TRUE(ReadAll(Out() / "figures" / (id + ".png")).starts_with("\x89PNG")) << id;
+    EXPECT_NE(ReadAll(Out() / "figures" / (id + ".svg")).find("<svg"), std::string::npos) << id;
+    EXPECT_NE(page.find("src=\"figures/" + id + ".png\""), std::string::npos) << id;
+  }
+  ASSERT_FALSE(data.at("world").is_null()) << data.at("world_note");
+  EXPECT_FALSE(fs::exists(Out() / "figures" / "plot.log"));
+}
+
+TEST_F(ReportTest, WithoutFiguresWritesAllElse) {
+  const CommandResult result = Report("--no-figures", "ED3R_PYTHON=/nonexistent/python3");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err, "note: figures not drawn (--no-figures)\n");
+  for (const char* file :
+       {"index.html", "report.txt", "report.json", "metrics.csv", "generalisation.csv", "tables/arms.md",
+        "tables/arms.tex", "tables/arms.csv", "tables/arms.json", "figures/data.json"})
+    EXPECT_GT(ReadAll(Out() / file).size(), 0u) << file;
+  EXPECT_NE(ReadAll(Out() / "index.html").find("figures not drawn"), std::string::npos);
+}
+
+TEST_F(ReportTest, APythonThatIsMissingIsANote) {
+  const CommandResult result = Report("", "ED3R_PYTHON=/nonexistent/python3");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err,
+            "note: figures not drawn: /nonexistent/python3: No such file or directory; set ED3R_PYTHON\n");
+  EXPECT_TRUE(fs::exists(Out() / "index.html"));
+}
+
+TEST_F(ReportTest, AMatplotlibThatIsMissingIsANote) {
+  const fs::path scripts = Script("import sys\nprint('no matplotlib', file=sys.stderr)\nsys.exit(3)\n");
+  const CommandResult result = Report("", "ED3R_SCRIPTS=" + scripts.string());
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err, "note: figures not drawn: no matplotlib\n");
+}
+
+TEST_F(ReportTest, AScriptThatIsMissingIsANote) {
+  const CommandResult result = Report("", "ED3R_SCRIPTS=/nonexistent");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err,
+            "note: figures not drawn: /nonexistent/plot.py is not there; set ED3R_SCRIPTS to its folder\n");
+}
+
+TEST_F(ReportTest, APlotThatFailsIsAFailureWithItsLine) {
+  const fs::path scripts = Script("raise ValueError('no colour left')\n");
+  const CommandResult result = Report("", "ED3R_SCRIPTS=" + scripts.string());
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("figures: drawing failed: ValueError: no colour left"), std::string::npos)
+      << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  EXPECT_TRUE(fs::exists(Out() / "index.html"));
+  EXPECT_NE(ReadAll(Out() / "figures" / "plot.log").find("Traceback"), std::string::npos);
+}
+
+TEST_F(ReportTest, OldPicturesDoNotStay) {
+  fs::create_directories(Out() / "figures");
+  std::ofstream(Out() / "figures" / "old.png") << "x";
+  EXPECT_EQ(Report("--no-figures").status, 0);
+  EXPECT_FALSE(fs::exists(Out() / "figures" / "old.png"));
+}
+
+TEST_F(ReportTest, JsonIsAllThatItPrints) {
+  const CommandResult result = Report("--json --no-figures");
+  ASSERT_EQ(result.status, 0);
+  EXPECT_EQ(nlohmann::json::parse(result.out).at("arms").at("rbs").at("missions"), 24);
+}
+
+TEST_F(ReportTest, ThePageTellsWhatWasRun) {
+  ASSERT_EQ(Report("--no-figures").status, 0);
+  const std::string page = ReadAll(Out() / "index.html");
+  std::string digest = Ed3r("digest " + (*scratch_ / "run").string()).out;
+  digest.pop_back();
+  EXPECT_NE(page.find(digest), std::string::npos);
+  for (const char* part : {"rbs.yaml --missions 24 --out", "24 of 24 planned", "20260101", "SIMD", "commit "})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+}
+
+TEST_F(ReportTest, AFolderWithoutARunIsBadInput) {
+  const CommandResult result = Ed3r("report " + Out().string());
+  EXPECT_EQ(result.status, 2);
+  EXPECT_FALSE(fs::exists(Out()));
+}
+
+}  // namespace
+}  // namespace ed3r

@@ -1,0 +1,200 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "studies/figures/figure_data.h"
+#include "studies/figures/mission_columns.h"
+#include "tests/studies/five_missions.h"
+
+namespace ed3r {
+namespace {
+
+ArmData Arm(const std::string& name, const std::string& stage = "online") {
+  ArmData arm = FiveMissions();
+  arm.stage = stage, arm.name = name;
+  return arm;
+}
+
+ArmPlan Plan(const std::string& stage, const std::string& name, const std::string& strategy,
+             bool warmup = false) {
+  return {stage, name, warmup, {{"mission.strategy", strategy}, {"agents.eta_min", "0.75"}}};
+}
+
+std::vector<std::string> Ids(const std::vector<FigureSpec>& figures) {
+  std::vector<std::string> ids;
+  for (const FigureSpec& figure : figures) ids.push_back(figure.id);
+  return ids;
+}
+
+nlohmann::ordered_json DataOf(const std::vector<ArmData>& arms, const std::vector<ArmPlan>& plans,
+                              const std::vector<ShownMission>& missions = {},
+                              std::shared_ptr<const Scene> scene = {}) {
+  std::vector<ArmMetrics> metrics;
+  for (const ArmData& arm : arms) metrics.push_back(ComputeMetrics(arm));
+  return MakeFigureData({.name = "test",
+                         .arms = arms,
+                         .metrics = metrics,
+                         .plans = plans,
+                         .missions = missions,
+                         .scene = std::move(scene),
+                         .scene_note = "because"});
+}
+
+TEST(ArmPlanTest, IsReadFromThePlanText) {
+  const auto plans = ReadArmPlans(
+      "sweep=s\nseed=1\nstage=a\nkind=fly\nafter=\nmissions=2\narm=x=1\nmission.strategy=random\n"
+      "stage=t\nkind=train\nafter=a\nmissions=0\narm=t\nmission.strategy=random\n"
+      "stage=b\nkind=fly\nafter=t\nmissions=3\narm=y\nmission.strategy=ed3r\nagents.eta_min=0.65\n");
+  ASSERT_EQ(plans.size(), 3u);
+  EXPECT_EQ(plans[0].name, "x=1");
+  EXPECT_TRUE(plans[0].warmup);
+  EXPECT_FALSE(plans[2].warmup);
+  EXPECT_EQ(plans[2].stage, "b");
+  EXPECT_EQ(plans[2].Setting("agents.eta_min"), "0.65");
+  EXPECT_EQ(plans[2].Setting("no.such"), "");
+  EXPECT_TRUE(ReadArmPlans("").empty());
+}
+
+TEST(FigureListTest, ThePapersArmsComeInItsGroups) {
+  const std::vector<ArmData> arms = {Arm("warmup", "warmup"), Arm("warmup-ecd2r", "warmup"),
+                                     Arm("ed3r-65"),          Arm("ed3r-75"),
+                                     Arm("ablation-1"),       Arm("ecd2r")};
+  const std::vector<ArmPlan> plans = {
+      Plan("warmup", "warmup", "random", true),   Plan("warmup", "warmup-ecd2r", "random-offload", true),
+      Plan("online", "ed3r-65", "ed3r"),          Plan("online", "ed3r-75", "ed3r"),
+      Plan("online", "ablation-1", "ablation-1"), Plan("online", "ecd2r", "ecd2r")};
+  const auto figures = ListFigures(arms, plans, 0);
+  EXPECT_EQ(Ids(figures),
+            (std::vector<std::string>{"overview-thresholds", "insights-thresholds", "decisions-thresholds",
+                                      "overview-ablations", "insights-ablations", "decisions-ablations",
+                                      "overview-baselines", "insights-baselines", "decisions-baselines",
+                                      "pareto", "sites"}));
+  EXPECT_EQ(figures[0].warmups, std::vector<std::size_t>{0});
+  EXPECT_EQ(figures[6].warmups, (std::vector<std::size_t>{0, 1}));  // ECD2R learnt from one of its own
+  EXPECT_EQ(figures[9].arms, (std::vector<std::size_t>{2, 3, 4, 5}));
+}
+
+TEST(FigureListTest, OneArmHasNoPareto) {
+  const std::vector<ArmData> arms = {Arm("rbs")};
+  EXPECT_EQ(Ids(ListFigures(arms, {}, 2)), (std::vector<std::string>{"overview-arms-1", "insights-arms-1",
+                                                                     "decisions-arms-1", "sites", "map"}));
+}
+
+TEST(FigureListTest, AWarmupAloneIsDrawnAndEmptyArmsAreNot) {
+  ArmData empty = Arm("ed3r-75");
+  empty.missions.clear();
+  const std::vector<ArmPlan> plans = {Plan("warmup", "warmup", "random", true),
+                                      Plan("online", "ed3r-75", "ed3r")};
+  const auto figures = ListFigures(std::vector{Arm("warmup", "warmup"), empty}, plans, 0);
+  ASSERT_FALSE(figures.empty());
+  for (const FigureSpec& figure : figures) EXPECT_EQ(figure.arms, std::vector<std::size_t>{0}) << figure.id;
+  EXPECT_TRUE(figures[0].warmups.empty());
+  EXPECT_TRUE(ListFigures(std::vector{empty}, plans, 0).empty());
+}
+
+TEST(FigureListTest, ManyArmsAreSplitAndLimited) {
+  std::vector<ArmData> arms;
+  for (int i = 0; i < 60; ++i) arms.push_back(Arm("mass=" + std::to_string(i)));
+  std::size_t overviews = 0, drawn = 0;
+  for (const FigureSpec& figure : ListFigures(arms, {}, 0)) {
+    if (figure.kind != "overview") continue;
+    ++overviews, drawn += figure.arms.size();
+    EXPECT_LE(figure.arms.size(), kGroupArms);
+  }
+  EXPECT_EQ(overviews, kMostGroups);
+  EXPECT_EQ(drawn, kMostGroups * kGroupArms);
+}
+
+TEST(FigureDataTest, EveryMissionHasEveryColumn) {
+  const auto data = DataOf({Arm("ed3r-75"), Arm("mine")}, {Plan("online", "ed3r-75", "ed3r")});
+  const auto& arm = data.at("arms").at(0);
+  EXPECT_EQ(arm.at("eta_min_pct"), 75);
+  EXPECT_EQ(arm.at("strategy"), "ed3r");
+  EXPECT_TRUE(data.at("arms").at(1).at("strategy").is_null());
+  EXPECT_EQ(arm.at("metrics").size(), MetricDefinitions().size());
+  EXPECT_EQ(arm.at("metrics").at("msr_pct").at("paper"), 97.18);
+  std::set<std::string> columns, units;
+  for (const auto& [name, values] : arm.at("per_mission").items()) {
+    columns.insert(name);
+    EXPECT_EQ(values.size(), 5u) << name;
+  }
+  for (const auto& [name, unit] : data.at("units").items()) units.insert(name);
+  EXPECT_EQ(columns, units);
+  const auto& missions = arm.at("per_mission");
+  EXPECT_EQ(missions.at("energy_kj").at(0), 7.6);
+  EXPECT_EQ(missions.at("duration_min").at(3), 18);
+  EXPECT_EQ(missions.at("outcome").dump(), "[0,0,1,2,0]");
+  EXPECT_EQ(missions.at("scs_pct").at(1), 80);
+  EXPECT_TRUE(missions.at("scs_pct").at(3).is_null());          // no reliable timestep
+  EXPECT_EQ(missions.at("lf_accuracy_pct").at(0), 75);          // 1 - 0.2 / 0.8
+  EXPECT_EQ(missions.at("lf_accuracy_pct").at(3), 0);           // the worst
+  EXPECT_TRUE(missions.at("lf_accuracy_pct").at(4).is_null());  // nothing predicted
+}
+
+TEST(FigureDataTest, FiguresNameArmsThatAreThere) {
+  const auto data = DataOf({Arm("rbs", "one"), Arm("rbs", "two"), Arm("ecd2r", "two")}, {});
+  std::set<std::string> keys;
+  for (const auto& arm : data.at("arms")) keys.insert(arm.at("key"));
+  EXPECT_EQ(keys, (std::set<std::string>{"one/rbs", "two/rbs", "ecd2r"}));
+  for (const auto& figure : data.at("figures"))
+    for (const auto& key : figure.at("arms")) EXPECT_TRUE(keys.contains(key)) << key;
+}
+
+TEST(FigureDataTest, SitesAddUpToTheirPools) {
+  ArmData arm = Arm("rbs");
+  arm.missions[1].site = 3, arm.missions[3].site = 3, arm.missions[4].site = 5;
+  const auto sites = SiteSuccess(arm);
+  ASSERT_EQ(sites.size(), 3u);
+  EXPECT_EQ(sites[1].at("site"), 3);
+  EXPECT_EQ(sites[1].at("missions"), 2);
+  EXPECT_EQ(sites[1].at("success_pct"), 50);
+  EXPECT_EQ(sites[1].at("depleted_pct"), 50);
+  EXPECT_EQ(PooledSuccess(arm, true).at("missions"), 2);
+  EXPECT_EQ(PooledSuccess(arm, false).at("missions"), 3);
+  for (MissionRecord& mission : arm.missions) mission.site_known = 1;
+  EXPECT_TRUE(PooledSuccess(arm, false).is_null());
+}
+
+TEST(FigureDataTest, ConvergenceEndsAtTheTablesInterval) {
+  ArmData arm = Arm("rbs");
+  for (int i = 0; i < 4; ++i)
+    arm.missions.insert(arm.missions.end(), arm.missions.begin(), arm.missions.begin() + 5);
+  arm.missions.resize(25);
+  const auto curve = Convergence(arm);
+  EXPECT_EQ(curve.at("missions").dump(), "[10,13,17,23,25]");
+  const MetricValue energy = ComputeMetrics(arm)["total_energy_kj"];
+  EXPECT_NEAR(curve.at("total_energy_kj").back().get<double>(), 0.5 * (energy.hi - energy.lo), 1e-4);
+  for (std::size_t i = 0; i < arm.missions.size(); ++i) arm.missions[i].network = i < 20 ? 0 : 1;
+  EXPECT_EQ(Convergence(arm).at("missions").dump(), "[23,25]");  // from where both networks are in
+  arm.missions.resize(9);
+  EXPECT_TRUE(Convergence(arm).at("missions").empty());
+}
+
+TEST(FigureDataTest, ShownMissionsCarryTheirPathAndWorld) {
+  ShownMission shown{.stage = "online", .arm = "rbs", .number = 4, .record = FiveMissions().missions[0]};
+  shown.record.start_x_m = 1.26;
+  shown.record.steps.resize(2);
+  shown.record.steps[1].x_m = 7, shown.record.steps[1].scs = 0.914;
+  Scene::Parts parts;
+  parts.name = "flat", parts.size_m = {40, 20, 50};
+  parts.terrain = {.columns = 5, .rows = 3, .cell_m = 10, .height_m = std::vector<float>(15, 2.0F)};
+  parts.sites = {{"here", {5, 6, 2}, true}};
+  const auto data = DataOf({Arm("rbs")}, {}, {shown}, std::make_shared<Scene>(std::move(parts)));
+  const auto& mission = data.at("missions_shown").at(0);
+  EXPECT_EQ(mission.at("x_m").dump(), "[1.3,0,7]");
+  EXPECT_EQ(mission.at("scs_pct").dump(), "[null,0,91.4]");
+  EXPECT_EQ(mission.at("outcome"), "success");
+  EXPECT_EQ(data.at("world").at("height_m").size(), 3u);
+  EXPECT_EQ(data.at("world").at("height_m").at(0).size(), 5u);
+  EXPECT_EQ(data.at("world").at("sites").at(0).at("name"), "here");
+  EXPECT_TRUE(DataOf({Arm("rbs")}, {}, {shown}).at("world").is_null());
+}
+
+TEST(RoundedTest, KeepsWhatAFigureCanShow) {
+  EXPECT_EQ(Rounded(1.0 / 3).dump(), "0.3333");
+  EXPECT_EQ(Rounded(-2.00001).dump(), "-2");
+  EXPECT_TRUE(Rounded(std::numeric_limits<double>::quiet_NaN()).is_null());
+}
+
+}  // namespace
+}  // namespace ed3r
