@@ -28,7 +28,7 @@ void WriteFile(const fs::path& path, const std::string& text) {
 }  // namespace
 
 Report MakeReport(const RunResults& results) {
-  Report report{results.name, {}, {}, JudgeClaims(PaperClaims(), results.arms)};
+  Report report{results.name, {}, {}, JudgeClaims(PaperClaims(), results.arms), Convergence(results.arms)};
   for (const ArmData& arm : results.arms) {
     report.arms.push_back(ComputeMetrics(arm));
     report.generalisation.push_back(ComputeGeneralisation(arm));
@@ -64,6 +64,7 @@ void WriteReport(const Report& report, const std::string& dir) {
   WriteFile(base / "metrics.csv", ResultCsv(report.arms, PaperClaims()));
   WriteFile(base / "generalisation.csv", GeneralisationCsv(report.generalisation));
   WriteFile(base / "verdicts.csv", VerdictCsv(report.claims));
+  WriteFile(base / "convergence.csv", ConvergenceCsv(report.convergence));
 }
 
 }  // namespace ed3r

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/claims/convergence.h"
 #include "studies/claims/verdicts.h"
 #include "studies/metrics/arm.h"
 #include "studies/metrics/metrics.h"
@@ -23,6 +24,7 @@ struct Report {
   std::vector<ArmMetrics> arms;
   std::vector<Generalisation> generalisation;  // one per arm
   ClaimStudy claims;
+  std::vector<ConvergencePoint> convergence;
 };
 
 Report MakeReport(const RunResults& results);
@@ -33,7 +35,7 @@ std::string ReportText(const Report& report);
 // {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson, "claims": as VerdictJson}.
 nlohmann::ordered_json ReportJson(const Report& report);
 
-// Writes report.txt, report.json, metrics.csv, generalisation.csv and verdicts.csv into `dir`, which it makes if it has to;
+// Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv and convergence.csv into `dir`, which it makes if it has to;
 // each file is replaced whole or left as it was. Throws UserError when it cannot.
 void WriteReport(const Report& report, const std::string& dir);
 
