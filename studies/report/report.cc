@@ -39,6 +39,7 @@ Report MakeReport(const RunResults& results) {
     p85.push_back(ComputeMetrics(P85Group(arm)));
   }
   report.claims = JudgeClaims(PaperClaims(), arms);
+  report.convergence = Convergence(arms);
   report.tables = MakeStudyTables(report.told, p85);
   return report;
 }
@@ -73,6 +74,7 @@ void WriteReport(const Report& report, const std::string& dir) {
   WriteWhole(base / "metrics.csv", ResultCsv(report.arms, PaperClaims()));
   WriteWhole(base / "generalisation.csv", GeneralisationCsv(report.generalisation));
   WriteWhole(base / "verdicts.csv", VerdictCsv(report.claims));
+  WriteWhole(base / "convergence.csv", ConvergenceCsv(report.convergence));
   if (!report.variants.variants.empty()) {
     WriteWhole(base / "variants.csv", DifferenceCsv(report.variants));
     WriteWhole(base / "variant_verdicts.csv", VariantVerdictCsv(report.variants));
