@@ -28,6 +28,7 @@ Command AddFit(CLI::App& program);
 Command AddParams(CLI::App& program);
 Command AddPhysics(CLI::App& program);
 Command AddWorld(CLI::App& program);
+Command AddFrames(CLI::App& program);
 Command AddDoctor(CLI::App& program);
 
 constexpr int kDone = 0;

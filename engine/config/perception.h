@@ -11,6 +11,7 @@
 
 #include "engine/config/detector.h"
 #include "engine/config/field.h"
+#include "engine/config/render.h"
 
 namespace ed3r {
 
@@ -73,6 +74,7 @@ struct PerceptionConfig {
   ResponseConfig quantized{
       .half_signal = 0.00066, .slope = 3.0, .ceiling = 0.93, .view_sigma = 0.7, .frame_sigma = 0.6};
   DetectorConfig detector;
+  RenderConfig render;
 
   template <class Self, class Visitor>
   static void Describe(Self& self, Visitor&& visit) {
@@ -109,6 +111,7 @@ struct PerceptionConfig {
     visit.Nested("full", self.full);
     visit.Nested("quantized", self.quantized);
     visit.Nested("detector", self.detector);
+    visit.Nested("render", self.render);
   }
 };
 

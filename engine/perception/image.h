@@ -1,4 +1,4 @@
-// The camera's frames of one sensing period, as the renderer leaves them and the detectors take them.
+// Camera frames as the detectors take them.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 
 namespace ed3r {
 
-// Frame-major, rows from top to bottom, pixels from left to right, interleaved red, green, blue in 0 .. 255:
-// rgb has frames * height_px * width_px * 3 bytes.
+// The frames of one sensing period, frame after frame; rows top to bottom, pixels left to right, red, green and
+// blue interleaved, 8 bits each, display-encoded: frames * height_px * width_px * 3 bytes.
 struct FrameStack {
   int frames = 0;
   int width_px = 0;
