@@ -23,6 +23,7 @@ Command AddDigest(CLI::App& program);
 Command AddMerge(CLI::App& program);
 Command AddReplay(CLI::App& program);
 Command AddExplain(CLI::App& program);
+Command AddDetect(CLI::App& program);
 Command AddFit(CLI::App& program);
 Command AddParams(CLI::App& program);
 Command AddPhysics(CLI::App& program);

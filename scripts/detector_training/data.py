@@ -8,8 +8,8 @@ import numpy as np
 
 WIDTH, HEIGHT = 96, 54
 
-# A frame is positive when this much of a fire is in it (ground truth of the renderer, of 96 x 54 pixels). Fewer pixels
-# than FEW, but not none, leave a frame out of training, never out of an evaluation, where every visible pixel counts.
+# A frame is positive when the renderer's ground truth says so: one visible pixel of fire or smoke. Frames with fewer
+# than these are left out of training, where a pixel or two teaches noise, never out of an evaluation.
 FEW_FIRE_PX, FEW_SMOKE_PX = 2, 8
 
 
@@ -59,12 +59,12 @@ def read_rendered(folder: pathlib.Path) -> DataSet:
         rows = list(csv.DictReader(file))
     if len(rows) != len(frames):
         raise DataError(f"{folder}/labels.csv: {len(rows)} rows for {len(frames)} frames")
-    for column in ("view", "world", "distance_m", "fire_px", "smoke_px", "occluded"):
+    for column in ("view", "world", "distance_m", "fire_px", "smoke_px", "occluded", "label"):
         if rows and column not in rows[0]:
             raise DataError(f"{folder}/labels.csv: has no column {column}")
     number = {key: np.array([float(row[key]) for row in rows]) for key in ("distance_m", "fire_px", "smoke_px",
-                                                                         "occluded")}
-    positive = (number["fire_px"] > 0) | (number["smoke_px"] > 0)
+                                                                         "occluded", "label")}
+    positive = number["label"] > 0
     clear = (number["fire_px"] >= FEW_FIRE_PX) | (number["smoke_px"] >= FEW_SMOKE_PX)
     world = np.array([row["world"] for row in rows])
     view = np.array([f"{row['world']}/{row['view']}" for row in rows])
