@@ -6,7 +6,8 @@
 //   image) logit   z_i = slope log10(s / half_signal) + N(0, view_sigma) per timestep + N(0, frame_sigma) per
 //   frame confidence of frame i = ceiling / (1 + exp(-z_i)), and 0 below frame_threshold.
 // The Full and the Quantized model differ only in half_signal, slope, ceiling and the two sigmas. A tier made
-// of rendered pixels can fit them; until then they are calibrated on the RBS row alone.
+// of rendered pixels can fit them; the defaults are calibrated on the RBS row of the paper alone
+// (sweeps/calibration, scripts/calibrate.py).
 #pragma once
 
 #include "engine/config/detector.h"
@@ -24,9 +25,9 @@ struct EnumNames<PerceptionTier> {
 
 // Response of one detection model.
 struct ResponseConfig {
-  double half_signal = 0.00033;
-  double slope = 4.0;
-  double ceiling = 0.97;
+  double half_signal = 0.000348;
+  double slope = 3.27;
+  double ceiling = 0.956;
   double view_sigma = 0.5;
   double frame_sigma = 0.3;
 
@@ -65,15 +66,15 @@ struct PerceptionConfig {
   PerceptionTier tier = PerceptionTier::kProfile;
   double frame_threshold = 0.5;
   double fire_weight = 1.0;
-  double smoke_weight = 0.35;
-  double haze_range_m = 600.0;
-  double distractors_per_km2 = 150.0;
+  double smoke_weight = 0.745;
+  double haze_range_m = 479.0;
+  double distractors_per_km2 = 178.0;
   double distractor_radius_m = 2.5;
   double distractor_weight = 0.5;
-  double distractor_tilt_deg = 50.0;
+  double distractor_tilt_deg = 42.3;
   ResponseConfig full;
   ResponseConfig quantized{
-      .half_signal = 0.00066, .slope = 3.0, .ceiling = 0.93, .view_sigma = 0.7, .frame_sigma = 0.6};
+      .half_signal = 0.000727, .slope = 2.45, .ceiling = 0.916, .view_sigma = 0.7, .frame_sigma = 0.6};
   RenderConfig render;
   DetectorConfig detector;
 
