@@ -14,32 +14,12 @@ namespace {
 constexpr int kSteps = 24;      // samples on the way through the box around the plume
 constexpr int kFineSteps = 80;  // in pictures for people, whose pixels are smaller than kFinePixel_rad
 constexpr float kFinePixel_rad = 0.005f;
-constexpr float kMeanNoise = 0.5f;
-constexpr float kFlameTurbulence = 2.6f;
-constexpr float kSmokeTurbulence = 3.6f;
 constexpr float kFlameAbsorption = 0.40f;  // 1/m of full density
 constexpr float kSmokeAbsorption = 0.40f;
-constexpr float kFlameFeature_m = 3.2f, kFlameRise_mps = 8.0f;
-constexpr float kFlameStretch = 1.6f;  // flames are longer than wide
-constexpr float kSmokeFeature_m = 7.0f, kSmokeRise_mps = 4.5f;
-constexpr float kFine = 2.3f;  // features of the second noise, times smaller; it rises faster
-constexpr float kFineRise = 1.35f;
 constexpr float kSpread = 1.25f;  // turbulence reaches this far beyond the mean radius
 
 const Colour kEmber(2.2f, 0.34f, 0.03f), kFlame(4.2f, 1.45f, 0.16f), kCore(5.2f, 3.1f, 0.85f);
 const Colour kFireLight(0.9f, 0.33f, 0.07f);
-
-struct Sample {
-  const std::uint8_t* coarse;  // columns of noise
-  const std::uint8_t* fine;
-  float density;   // mean; turbulence is added
-  float length;    // of the step, times absorption
-  float sunlight;  // smoke: how brightly it is lit, 0 .. 1
-  float firelight;
-  std::uint8_t coarse_z, fine_z;
-  bool flame;
-  bool hidden;  // behind something solid
-};
 
 // What one pixel sees of the plume.
 struct Glimpse {
@@ -47,12 +27,6 @@ struct Glimpse {
   float smoke = 0.0f;  // opacity of the smoke
   float sunlight = 0.0f, firelight = 0.0f;
 };
-
-// Written so that a loop over it becomes vector minimum and maximum.
-__attribute__((always_inline)) inline float Clamp01(float x) {
-  x = x < 1.0f ? x : 1.0f;
-  return x > 0.0f ? x : 0.0f;
-}
 
 struct Interval {
   float from, to;
@@ -99,7 +73,7 @@ class Plume {
 
   // Appends the samples of one ray in which there can be flame or smoke, the nearest first.
   void Cut(const Eigen::Vector3f& origin_m, const Eigen::Vector3f& direction, const Interval& interval,
-           float solid_m, float dither, int steps, std::vector<Sample>& samples) const {
+           float solid_m, float dither, int steps, std::vector<PlumeSample>& samples) const {
     const float step_m = (interval.to - interval.from) / static_cast<float>(steps);
     const Eigen::Vector3f start = origin_m - base_m_;
     for (int k = 0; k < steps; ++k) {
@@ -113,7 +87,8 @@ class Plume {
   }
 
  private:
-  void AddFlame(const Eigen::Vector3f& p, float step_m, bool hidden, std::vector<Sample>& samples) const {
+  void AddFlame(const Eigen::Vector3f& p, float step_m, bool hidden,
+                std::vector<PlumeSample>& samples) const {
     const float height = p.z() / (1.15f * flame_height_m_);
     if (height >= 1.0f) return;
     // Full at the foot, drawn to a tip.
@@ -125,7 +100,8 @@ class Plume {
     samples.back().flame = true;
   }
 
-  void AddSmoke(const Eigen::Vector3f& p, float step_m, bool hidden, std::vector<Sample>& samples) const {
+  void AddSmoke(const Eigen::Vector3f& p, float step_m, bool hidden,
+                std::vector<PlumeSample>& samples) const {
     const float rise = (p.z() - smoke_from_m_) / (total_height_m_ - smoke_from_m_);
     if (rise <= 0.0f || rise >= 1.0f) return;
     const float swing_m = rise * swing_m_[static_cast<std::size_t>(rise * kSwings)];
@@ -137,22 +113,23 @@ class Plume {
     const float density = (0.85f - q2) * fade - 0.35f * (1.0f - fade);
     samples.push_back(
         At(p, kSmokeFeature_m, 1.0f, density, kSmokeAbsorption * (1.0f - 0.62f * rise) * step_m, hidden));
-    Sample& sample = samples.back();
+    PlumeSample& sample = samples.back();
     const float towards_sun = (x * to_sun_.x() + y * to_sun_.y()) / radius_m + 0.6f * to_sun_.z();
     sample.sunlight = std::clamp(0.55f + 0.45f * towards_sun, 0.12f, 1.0f);
     sample.firelight = Attenuation(4.0f * rise);
   }
 
-  Sample At(const Eigen::Vector3f& p, float feature_m, float stretch, float density, float length,
-            bool hidden) const {
+  PlumeSample At(const Eigen::Vector3f& p, float feature_m, float stretch, float density, float length,
+                 bool hidden) const {
     const float scale = NoiseVolume::kCellsPerUnit / feature_m;
     const auto cell = [](float x) { return static_cast<int>(x + 65536.0f) & (NoiseVolume::kCells - 1); };
     const float z = p.z() / stretch;
-    Sample sample{};
+    PlumeSample sample{};
     sample.coarse = noise_.Column(cell(p.x() * scale), cell(p.y() * scale));
-    sample.fine = noise_.Column(cell(p.x() * scale * kFine + 17.0f), cell(p.y() * scale * kFine + 29.0f));
+    sample.fine = noise_.Column(cell(p.x() * scale * kFineFeatures + 17.0f),
+                                cell(p.y() * scale * kFineFeatures + 29.0f));
     sample.coarse_z = static_cast<std::uint8_t>(cell(z * scale));
-    sample.fine_z = static_cast<std::uint8_t>(cell(z * scale * kFine));
+    sample.fine_z = static_cast<std::uint8_t>(cell(z * scale * kFineFeatures));
     sample.density = density;
     sample.length = length;
     sample.hidden = hidden;
@@ -168,119 +145,6 @@ class Plume {
   static constexpr int kSwings = 64;
   std::array<float, kSwings + 1> swing_m_;  // how far the smoke's axis bends, from its foot to its top
 };
-
-// What the samples of a ray have added up to, the nearest first.
-struct Absorbed {
-  float smoke_depth = 0.0f, flame_depth = 0.0f, sunlight = 0.0f, firelight = 0.0f;
-};
-
-// noise: 0 .. 1. Light of the flame is dimmed by the smoke before it.
-__attribute__((always_inline)) inline void AbsorbFlame(const Sample& sample, float noise, float puff,
-                                                       const float& smoke_depth, float& flame_depth) {
-  const float density = Clamp01(sample.density + puff + kFlameTurbulence * (noise - kMeanNoise));
-  flame_depth += density * sample.length / (1.0f + smoke_depth * (1.0f + 0.5f * smoke_depth));
-}
-__attribute__((always_inline)) inline void AbsorbSmoke(const Sample& sample, float noise, float& smoke_depth,
-                                                       float& sunlight, float& firelight) {
-  const float depth = Clamp01(sample.density + kSmokeTurbulence * (noise - kMeanNoise)) * sample.length;
-  smoke_depth += depth;
-  sunlight += depth * sample.sunlight;
-  firelight += depth * sample.firelight;
-}
-
-// The averaged plume: without turbulence.
-Absorbed AbsorbMean(std::span<const Sample> samples, bool behind_solids) {
-  Absorbed sum;
-  for (const Sample& sample : samples) {
-    if (sample.hidden && !behind_solids) break;
-    if (sample.flame)
-      AbsorbFlame(sample, kMeanNoise, 0.0f, sum.smoke_depth, sum.flame_depth);
-    else
-      AbsorbSmoke(sample, kMeanNoise, sum.smoke_depth, sum.sunlight, sum.firelight);
-  }
-  return sum;
-}
-
-// Frames are worked on kLanes at a time, one in each lane of a vector.
-constexpr int kLanes = 40;
-
-struct LaneDrifts {
-  int count = 0;  // a multiple of 8; the last lanes may repeat a frame
-  std::array<int, kLanes> flame, flame_fine, smoke, smoke_fine;
-  alignas(32) std::array<float, kLanes> puff;
-};
-struct LaneSums {
-  alignas(32) std::array<float, kLanes> smoke_depth, flame_depth, sunlight, firelight;
-};
-
-// Plain loops over lanes: the compiler makes vectors of them, and since nothing is fused or reordered, every
-// instruction set gives the same sums.
-__attribute__((always_inline)) inline void AbsorbLanes(std::span<const Sample> samples,
-                                                       const LaneDrifts& drifts, LaneSums& sums) {
-  constexpr int kMask = NoiseVolume::kCells - 1;
-  const int lanes = drifts.count;
-  sums = {};
-  alignas(32) std::array<std::int32_t, kLanes> coarse, fine;
-  for (const Sample& sample : samples) {
-    if (sample.hidden) break;
-    const int* drift = sample.flame ? drifts.flame.data() : drifts.smoke.data();
-    const int* drift_fine = sample.flame ? drifts.flame_fine.data() : drifts.smoke_fine.data();
-    for (int k = 0; k < lanes; ++k) {
-      coarse[k] = sample.coarse[(sample.coarse_z - drift[k]) & kMask];
-      fine[k] = sample.fine[(sample.fine_z - drift_fine[k]) & kMask];
-    }
-    const auto noise = [&](int k) {
-      return (0.62f / 255.0f) * static_cast<float>(coarse[k]) +
-             (0.38f / 255.0f) * static_cast<float>(fine[k]);
-    };
-    if (sample.flame) {
-      for (int k = 0; k < lanes; ++k)
-        AbsorbFlame(sample, noise(k), drifts.puff[k], sums.smoke_depth[k], sums.flame_depth[k]);
-    } else {
-      for (int k = 0; k < lanes; ++k)
-        AbsorbSmoke(sample, noise(k), sums.smoke_depth[k], sums.sunlight[k], sums.firelight[k]);
-    }
-  }
-}
-
-// Cells by which the noise has risen after a time.
-int Risen(double time_s, float rise_mps, float feature_m) {
-  const double moved = time_s * rise_mps / feature_m * NoiseVolume::kCellsPerUnit;
-  return static_cast<int>(std::lround(std::fmod(moved, NoiseVolume::kCells)));
-}
-
-LaneDrifts LanesOf(std::span<const PlumePhase> phases) {
-  LaneDrifts drifts{};
-  drifts.count = static_cast<int>((phases.size() + 7) / 8 * 8);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(drifts.count); ++k) {
-    const PlumePhase& phase = phases[std::min(k, phases.size() - 1)];
-    drifts.flame[k] = Risen(phase.time_s, kFlameRise_mps, kFlameStretch * kFlameFeature_m);
-    drifts.flame_fine[k] =
-        Risen(phase.time_s, kFineRise * kFlameRise_mps, kFlameStretch * kFlameFeature_m / kFine);
-    drifts.smoke[k] = Risen(phase.time_s, kSmokeRise_mps, kSmokeFeature_m);
-    drifts.smoke_fine[k] = Risen(phase.time_s, kFineRise * kSmokeRise_mps, kSmokeFeature_m / kFine);
-    drifts.puff[k] = phase.puff;
-  }
-  return drifts;
-}
-
-using LaneFunction = void (*)(std::span<const Sample>, const LaneDrifts&, LaneSums&);
-
-void AbsorbLanesBaseline(std::span<const Sample> samples, const LaneDrifts& drifts, LaneSums& sums) {
-  AbsorbLanes(samples, drifts, sums);
-}
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) void AbsorbLanesAvx2(std::span<const Sample> samples,
-                                                     const LaneDrifts& drifts, LaneSums& sums) {
-  AbsorbLanes(samples, drifts, sums);
-}
-#endif
-LaneFunction ChooseLaneFunction() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return AbsorbLanesAvx2;
-#endif
-  return AbsorbLanesBaseline;
-}
 
 Glimpse GlimpseOf(const Absorbed& sum) {
   Glimpse glimpse{1.0f - Attenuation(sum.flame_depth), 1.0f - Attenuation(sum.smoke_depth), 0.0f, 0.0f};
@@ -373,9 +237,8 @@ class LayerBuilder {
   }
 
   void AddRay(PlumeLayers& layers, const Ray& ray, std::size_t group) const {
-    static const LaneFunction absorb_lanes = ChooseLaneFunction();
     LaneSums sums;
-    absorb_lanes(SamplesOf(ray), drifts_[group], sums);
+    AbsorbInLanes(SamplesOf(ray), drifts_[group], sums);
     const std::size_t first = group * kLanes, count = std::min<std::size_t>(kLanes, frames_ - first);
     for (std::size_t k = 0; k < count; ++k) {
       if (sums.flame_depth[k] + sums.smoke_depth[k] < 0.002f) continue;
@@ -384,8 +247,8 @@ class LayerBuilder {
     }
   }
 
-  std::span<const Sample> SamplesOf(const Ray& ray) const {
-    return std::span<const Sample>(samples_).subspan(ray.first, ray.count);
+  std::span<const PlumeSample> SamplesOf(const Ray& ray) const {
+    return std::span<const PlumeSample>(samples_).subspan(ray.first, ray.count);
   }
 
   void Count(const Ray& ray, GroundTruth& truth) {
@@ -424,7 +287,7 @@ class LayerBuilder {
   float distance_m_ = 0.0f, haze_ = 0.0f;
   std::size_t frames_ = 0;
   std::vector<LaneDrifts> drifts_;
-  std::vector<Sample> samples_;
+  std::vector<PlumeSample> samples_;
   std::vector<Ray> rays_;
   int covered_px_ = 0, uncovered_px_ = 0;
 };
