@@ -1,13 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <numbers>
 
 #include "engine/app/commands.h"
 #include "engine/app/settings.h"
@@ -148,7 +146,7 @@ class DataSet {
                             view * options_.frames + i, view, numbers_[static_cast<std::size_t>(i)],
                             scene.Name(), scene.Sites()[static_cast<std::size_t>(plan.site)].name,
                             truth.distance_m, truth.fire_px, truth.smoke_px, truth.occluded, fire ? 1 : 0,
-                            plan.pose.tilt_rad * 180.0 / 3.14159265358979, props);
+                            plan.pose.tilt_rad * 180.0 / std::numbers::pi, props);
     if (view < options_.pictures) WritePictures(view, sensed.frames, renderer, plan.pose);
   }
 

@@ -221,6 +221,7 @@ void StaticGeometry::HiddenTowards(std::span<const Eigen::Vector3f> points_m,
   ED3R_CHECK(hidden.size() == points_m.size(), "one answer per point");
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   RTCRay16 packet;
   for (std::size_t first = 0; first < points_m.size(); first += kPacket) {
     const std::size_t count = std::min(kPacket, points_m.size() - first);

@@ -45,7 +45,7 @@ Eigen::Vector3d Around(const Scene& scene, const Eigen::Vector3d& target_m, doub
   return {x_m, y_m, scene.Ground().HeightAt(x_m, y_m) + stream.Uniform(kLowestM, kHighestM)};
 }
 
-// Turns the camera so that the target lies somewhere in the frame, or for a third at a tilt of any size.
+// Turns the camera so that the target lies somewhere in the frame, unless it is above a level camera's reach.
 void Aim(Pose& pose, const Eigen::Vector3d& target_m, Stream& stream) {
   const Eigen::Vector3d towards = target_m - pose.position_m;
   const double level_m = std::hypot(towards.x(), towards.y());

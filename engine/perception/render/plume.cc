@@ -1,6 +1,7 @@
 #include "engine/perception/render/plume.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,32 +11,15 @@
 namespace ed3r {
 namespace {
 
-constexpr int kSteps = 24;  // samples on the way through the box around the plume
-constexpr float kMeanNoise = 0.5f;
-constexpr float kFlameTurbulence = 2.6f;
-constexpr float kSmokeTurbulence = 2.4f;
+constexpr int kSteps = 24;      // samples on the way through the box around the plume
+constexpr int kFineSteps = 80;  // in pictures for people, whose pixels are smaller than kFinePixel_rad
+constexpr float kFinePixel_rad = 0.005f;
 constexpr float kFlameAbsorption = 0.40f;  // 1/m of full density
-constexpr float kSmokeAbsorption = 0.42f;
-constexpr float kFlameFeature_m = 3.2f, kFlameRise_mps = 8.0f;
-constexpr float kSmokeFeature_m = 8.0f, kSmokeRise_mps = 4.5f;
-constexpr float kFine = 2.3f;  // features of the second noise, times smaller; it rises faster
-constexpr float kFineRise = 1.35f;
+constexpr float kSmokeAbsorption = 0.40f;
 constexpr float kSpread = 1.25f;  // turbulence reaches this far beyond the mean radius
 
 const Colour kEmber(2.2f, 0.34f, 0.03f), kFlame(4.2f, 1.45f, 0.16f), kCore(5.2f, 3.1f, 0.85f);
 const Colour kFireLight(0.9f, 0.33f, 0.07f);
-
-struct Sample {
-  const std::uint8_t* coarse;  // columns of noise
-  const std::uint8_t* fine;
-  float density;   // mean; turbulence is added
-  float length;    // of the step, times absorption
-  float sunlight;  // smoke: how brightly it is lit, 0 .. 1
-  float firelight;
-  std::uint8_t coarse_z, fine_z;
-  bool flame;
-  bool hidden;  // behind something solid
-};
 
 // What one pixel sees of the plume.
 struct Glimpse {
@@ -47,23 +31,6 @@ struct Glimpse {
 struct Interval {
   float from, to;
 };
-
-// Cells by which the noise has risen.
-struct Drift {
-  int flame, flame_fine, smoke, smoke_fine;
-  float puff;
-};
-
-Drift DriftAt(const PlumePhase& phase) {
-  const auto cells = [&](float rise_mps, float feature_m) {
-    const double moved = phase.time_s * rise_mps / feature_m * NoiseVolume::kCellsPerUnit;
-    return static_cast<int>(std::lround(std::fmod(moved, NoiseVolume::kCells)));
-  };
-  return {cells(kFlameRise_mps, 1.6f * kFlameFeature_m),
-          cells(kFineRise * kFlameRise_mps, 1.6f * kFlameFeature_m / kFine),
-          cells(kSmokeRise_mps, kSmokeFeature_m), cells(kFineRise * kSmokeRise_mps, kSmokeFeature_m / kFine),
-          phase.puff};
-}
 
 class Plume {
  public:
@@ -81,6 +48,9 @@ class Plume {
     low_ = Eigen::Vector3f(std::min(0.0f, lean_.x()) - wide, std::min(0.0f, lean_.y()) - wide, -1.0f);
     high_ = Eigen::Vector3f(std::max(0.0f, lean_.x()) + wide, std::max(0.0f, lean_.y()) + wide,
                             std::max(total_height_m_, 1.3f * flame_height_m_) + 2.0f);
+    for (std::size_t i = 0; i < swing_m_.size(); ++i)
+      swing_m_[i] =
+          3.0f * flame_radius_m_ * (noise_.At(2.2f * static_cast<float>(i) / kSwings, 0.5f, 0.5f) - 0.5f);
   }
 
   // Part of a ray in the box around the plume; false for none.
@@ -103,10 +73,10 @@ class Plume {
 
   // Appends the samples of one ray in which there can be flame or smoke, the nearest first.
   void Cut(const Eigen::Vector3f& origin_m, const Eigen::Vector3f& direction, const Interval& interval,
-           float solid_m, float dither, std::vector<Sample>& samples) const {
-    const float step_m = (interval.to - interval.from) / kSteps;
+           float solid_m, float dither, int steps, std::vector<PlumeSample>& samples) const {
+    const float step_m = (interval.to - interval.from) / static_cast<float>(steps);
     const Eigen::Vector3f start = origin_m - base_m_;
-    for (int k = 0; k < kSteps; ++k) {
+    for (int k = 0; k < steps; ++k) {
       const float at_m = interval.from + (static_cast<float>(k) + dither) * step_m;
       const Eigen::Vector3f p = start + at_m * direction;
       const bool hidden = at_m > solid_m;
@@ -117,7 +87,8 @@ class Plume {
   }
 
  private:
-  void AddFlame(const Eigen::Vector3f& p, float step_m, bool hidden, std::vector<Sample>& samples) const {
+  void AddFlame(const Eigen::Vector3f& p, float step_m, bool hidden,
+                std::vector<PlumeSample>& samples) const {
     const float height = p.z() / (1.15f * flame_height_m_);
     if (height >= 1.0f) return;
     // Full at the foot, drawn to a tip.
@@ -125,38 +96,40 @@ class Plume {
     const float q2 = (p.x() * p.x() + p.y() * p.y()) / (radius_m * radius_m);
     if (q2 > kSpread * kSpread) return;
     const float density = 1.15f * (1.0f - q2) - 0.45f * height;
-    samples.push_back(At(p, kFlameFeature_m, 1.6f, density, kFlameAbsorption * step_m, hidden));
+    samples.push_back(At(p, kFlameFeature_m, kFlameStretch, density, kFlameAbsorption * step_m, hidden));
     samples.back().flame = true;
   }
 
-  void AddSmoke(const Eigen::Vector3f& p, float step_m, bool hidden, std::vector<Sample>& samples) const {
+  void AddSmoke(const Eigen::Vector3f& p, float step_m, bool hidden,
+                std::vector<PlumeSample>& samples) const {
     const float rise = (p.z() - smoke_from_m_) / (total_height_m_ - smoke_from_m_);
     if (rise <= 0.0f || rise >= 1.0f) return;
-    const float swing_m = 1.6f * rise * (noise_.At(0.05f * p.z(), 0.5f, 0.5f) - 0.5f) * flame_radius_m_;
+    const float swing_m = rise * swing_m_[static_cast<std::size_t>(rise * kSwings)];
     const float x = p.x() - rise * lean_.x() - swing_m, y = p.y() - rise * lean_.y() + swing_m;
     const float radius_m = 0.55f * flame_radius_m_ + rise * (top_radius_m_ - 0.55f * flame_radius_m_);
     const float q2 = (x * x + y * y) / (radius_m * radius_m);
     if (q2 > kSpread * kSpread) return;
     const float fade = SmoothStep(0.0f, 0.15f, rise) * SmoothStep(1.0f, 0.7f, rise);
-    const float density = (1.0f - q2) * fade - 0.35f * (1.0f - fade);
+    const float density = (0.85f - q2) * fade - 0.35f * (1.0f - fade);
     samples.push_back(
         At(p, kSmokeFeature_m, 1.0f, density, kSmokeAbsorption * (1.0f - 0.62f * rise) * step_m, hidden));
-    Sample& sample = samples.back();
+    PlumeSample& sample = samples.back();
     const float towards_sun = (x * to_sun_.x() + y * to_sun_.y()) / radius_m + 0.6f * to_sun_.z();
     sample.sunlight = std::clamp(0.55f + 0.45f * towards_sun, 0.12f, 1.0f);
     sample.firelight = Attenuation(4.0f * rise);
   }
 
-  Sample At(const Eigen::Vector3f& p, float feature_m, float stretch, float density, float length,
-            bool hidden) const {
+  PlumeSample At(const Eigen::Vector3f& p, float feature_m, float stretch, float density, float length,
+                 bool hidden) const {
     const float scale = NoiseVolume::kCellsPerUnit / feature_m;
     const auto cell = [](float x) { return static_cast<int>(x + 65536.0f) & (NoiseVolume::kCells - 1); };
     const float z = p.z() / stretch;
-    Sample sample{};
+    PlumeSample sample{};
     sample.coarse = noise_.Column(cell(p.x() * scale), cell(p.y() * scale));
-    sample.fine = noise_.Column(cell(p.x() * scale * kFine + 17.0f), cell(p.y() * scale * kFine + 29.0f));
+    sample.fine = noise_.Column(cell(p.x() * scale * kFineFeatures + 17.0f),
+                                cell(p.y() * scale * kFineFeatures + 29.0f));
     sample.coarse_z = static_cast<std::uint8_t>(cell(z * scale));
-    sample.fine_z = static_cast<std::uint8_t>(cell(z * scale * kFine));
+    sample.fine_z = static_cast<std::uint8_t>(cell(z * scale * kFineFeatures));
     sample.density = density;
     sample.length = length;
     sample.hidden = hidden;
@@ -169,39 +142,15 @@ class Plume {
   Eigen::Vector3f to_sun_;
   const NoiseVolume& noise_;
   Eigen::Vector3f low_, high_;  // of the box, from the base
+  static constexpr int kSwings = 64;
+  std::array<float, kSwings + 1> swing_m_;  // how far the smoke's axis bends, from its foot to its top
 };
 
-float Turbulence(const Sample& sample, const Drift& drift) {
-  constexpr int kMask = NoiseVolume::kCells - 1;
-  const int coarse = sample.coarse[(sample.coarse_z - (sample.flame ? drift.flame : drift.smoke)) & kMask];
-  const int fine =
-      sample.fine[(sample.fine_z - (sample.flame ? drift.flame_fine : drift.smoke_fine)) & kMask];
-  return (0.62f / 255.0f) * static_cast<float>(coarse) + (0.38f / 255.0f) * static_cast<float>(fine);
-}
-
-// Front to back through the samples of a ray. noise(sample) gives the turbulence, 0 .. 1.
-template <class Noise>
-Glimpse Look(std::span<const Sample> samples, float puff, bool behind_solids, const Noise& noise) {
-  float smoke_depth = 0.0f, flame_depth = 0.0f, sunlight = 0.0f, firelight = 0.0f;
-  for (const Sample& sample : samples) {
-    if (sample.hidden && !behind_solids) break;
-    const float offset = noise(sample) - kMeanNoise;
-    if (sample.flame) {
-      const float density = std::clamp(sample.density + puff + kFlameTurbulence * offset, 0.0f, 1.0f);
-      flame_depth += density * sample.length / (1.0f + smoke_depth * (1.0f + 0.5f * smoke_depth));
-    } else {
-      const float depth = std::clamp(sample.density + kSmokeTurbulence * offset, 0.0f, 1.0f) * sample.length;
-      smoke_depth += depth;
-      sunlight += depth * sample.sunlight;
-      firelight += depth * sample.firelight;
-    }
-  }
-  Glimpse glimpse;
-  glimpse.flame = 1.0f - Attenuation(flame_depth);
-  glimpse.smoke = 1.0f - Attenuation(smoke_depth);
-  if (smoke_depth > 0.0f) {
-    glimpse.sunlight = sunlight / smoke_depth;
-    glimpse.firelight = firelight / smoke_depth;
+Glimpse GlimpseOf(const Absorbed& sum) {
+  Glimpse glimpse{1.0f - Attenuation(sum.flame_depth), 1.0f - Attenuation(sum.smoke_depth), 0.0f, 0.0f};
+  if (sum.smoke_depth > 0.0f) {
+    glimpse.sunlight = sum.sunlight / sum.smoke_depth;
+    glimpse.firelight = sum.firelight / sum.smoke_depth;
   }
   return glimpse;
 }
@@ -218,7 +167,9 @@ class LayerBuilder {
       : trace_(trace), plume_(plume), ambience_(ambience), fog_(fog) {
     distance_m_ = (site.base_m.cast<float>() - trace.camera_m).norm();
     haze_ = 1.0f - Attenuation(distance_m_ / ambience.haze_range_m);
-    for (const PlumePhase& phase : phases) drifts_.push_back(DriftAt(phase));
+    frames_ = phases.size();
+    for (std::size_t first = 0; first < frames_; first += kLanes)
+      drifts_.push_back(LanesOf(phases.subspan(first, std::min<std::size_t>(kLanes, frames_ - first))));
   }
 
   PlumeLayers Build() {
@@ -227,7 +178,7 @@ class LayerBuilder {
     if (layers.columns == 0) return layers;
     const std::size_t pixels =
         static_cast<std::size_t>(layers.columns) * static_cast<std::size_t>(layers.rows);
-    layers.frames.resize(drifts_.size());
+    layers.frames.resize(frames_);
     for (PlumeLayers::Frame& frame : layers.frames) {
       frame.added = RadiancePlanes(pixels);
       frame.through.assign(pixels, 1.0f);
@@ -267,6 +218,7 @@ class LayerBuilder {
   void AddRow(PlumeLayers& layers, int row) {
     samples_.clear();
     rays_.clear();
+    const int steps = trace_.pixel_rad < kFinePixel_rad ? kFineSteps : kSteps;
     Interval interval{};
     for (int column = 0; column < layers.columns; ++column) {
       const std::size_t pixel =
@@ -274,31 +226,36 @@ class LayerBuilder {
       if (!plume_.Crosses(trace_.camera_m, trace_.direction[pixel], interval)) continue;
       const std::size_t first = samples_.size();
       plume_.Cut(trace_.camera_m, trace_.direction[pixel], interval, trace_.distance_m[pixel],
-                 UnitOf(Scramble(static_cast<std::uint32_t>(pixel))), samples_);
+                 UnitOf(Scramble(static_cast<std::uint32_t>(pixel))), steps, samples_);
       if (samples_.size() == first) continue;
       rays_.push_back(
           {pixel, static_cast<std::size_t>(row) * layers.columns + column, first, samples_.size() - first});
       if (trace_.grid.InPicture(layers.left + column, layers.top + row)) Count(rays_.back(), layers.truth);
     }
-    for (std::size_t f = 0; f < drifts_.size(); ++f)
-      for (const Ray& ray : rays_) {
-        const Drift& drift = drifts_[f];
-        const Glimpse glimpse = Look(SamplesOf(ray), drift.puff, false,
-                                     [&](const Sample& sample) { return Turbulence(sample, drift); });
-        if (glimpse.flame + glimpse.smoke > 0.002f) Paint(glimpse, ray, layers.frames[f]);
-      }
+    for (std::size_t group = 0; group < drifts_.size(); ++group)
+      for (const Ray& ray : rays_) AddRay(layers, ray, group);
   }
 
-  std::span<const Sample> SamplesOf(const Ray& ray) const {
-    return std::span<const Sample>(samples_).subspan(ray.first, ray.count);
+  void AddRay(PlumeLayers& layers, const Ray& ray, std::size_t group) const {
+    LaneSums sums;
+    AbsorbInLanes(SamplesOf(ray), drifts_[group], sums);
+    const std::size_t first = group * kLanes, count = std::min<std::size_t>(kLanes, frames_ - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (sums.flame_depth[k] + sums.smoke_depth[k] < 0.002f) continue;
+      Paint(GlimpseOf({sums.smoke_depth[k], sums.flame_depth[k], sums.sunlight[k], sums.firelight[k]}), ray,
+            layers.frames[first + k]);
+    }
+  }
+
+  std::span<const PlumeSample> SamplesOf(const Ray& ray) const {
+    return std::span<const PlumeSample>(samples_).subspan(ray.first, ray.count);
   }
 
   void Count(const Ray& ray, GroundTruth& truth) {
-    const auto mean = [](const Sample&) { return kMeanNoise; };
-    const Glimpse open = Look(SamplesOf(ray), 0.0f, true, mean);
+    const Glimpse open = GlimpseOf(AbsorbMean(SamplesOf(ray), true));
     if (std::max(open.flame, open.smoke) < GroundTruth::kVisibleOpacity) return;
     ++covered_px_;
-    const Glimpse seen = Look(SamplesOf(ray), 0.0f, false, mean);
+    const Glimpse seen = GlimpseOf(AbsorbMean(SamplesOf(ray), false));
     if (std::max(seen.flame, seen.smoke) >= GroundTruth::kVisibleOpacity) ++uncovered_px_;
     const float clear = (1.0f - haze_) * (1.0f - FogInFront(ray.pixel));
     if (seen.flame * clear >= GroundTruth::kVisibleOpacity) ++truth.fire_px;
@@ -328,8 +285,9 @@ class LayerBuilder {
   const Ambience& ambience_;
   const FogLayer& fog_;
   float distance_m_ = 0.0f, haze_ = 0.0f;
-  std::vector<Drift> drifts_;
-  std::vector<Sample> samples_;
+  std::size_t frames_ = 0;
+  std::vector<LaneDrifts> drifts_;
+  std::vector<PlumeSample> samples_;
   std::vector<Ray> rays_;
   int covered_px_ = 0, uncovered_px_ = 0;
 };

@@ -11,6 +11,7 @@
 #include "engine/perception/render/ambience.h"
 #include "engine/perception/render/shade.h"
 #include "engine/perception/render/trace.h"
+#include "engine/perception/render/turbulence.h"
 #include "engine/world/scene.h"
 
 namespace ed3r {
@@ -27,12 +28,6 @@ struct GroundTruth {
 
   // R16, for both tiers.
   bool FireInView() const { return fire_px + smoke_px > 0; }
-};
-
-// State of the turbulence in one frame.
-struct PlumePhase {
-  double time_s = 0.0;
-  float puff = 0.0f;  // how much the flames swell, about -0.15 .. 0.15
 };
 
 // Fire and smoke of several frames over the part of the grid that they cover: radiance to add, after the light from

@@ -167,10 +167,13 @@ class Shader {
   // Forest beyond the area: patches that stand for crowns.
   Surface FarGround(std::size_t i, const Eigen::Vector3f& p) const {
     const float woods = noise_.At(0.012f * p.x(), 0.012f * p.y(), 3.3f);
-    const float crowns = (noise_.At(0.14f * p.x(), 0.14f * p.y(), 0.9f) - 0.5f) * Detail(i, 6.0f);
-    const Colour albedo =
-        Mix(kLeaves[1], Mix(kGrass, kStraw, ambience_.dryness), SmoothStep(0.5f, 0.62f, woods));
-    return {albedo * (0.9f + 1.6f * crowns), Eigen::Vector3f::UnitZ(), 0.7f, 0.0f};
+    const float crowns = (noise_.At(0.16f * p.x(), 0.16f * p.y(), 0.9f) - 0.5f) * Detail(i, 5.0f);
+    const float stands = noise_.At(0.045f * p.x(), 0.045f * p.y(), 6.1f);
+    Colour forest = Mix(kLeaves[0], kLeaves[2], stands);
+    forest = Mix(forest, kAutumnLeaves[1], ambience_.autumn_share * SmoothStep(0.45f, 0.65f, stands));
+    forest *= 0.75f + 2.4f * std::max(-0.25f, crowns);
+    const Colour open = Mix(kGrass, kStraw, ambience_.dryness) * (0.9f + 0.5f * crowns);
+    return {Mix(forest, open, SmoothStep(0.56f, 0.62f, woods)), Eigen::Vector3f::UnitZ(), 0.7f, 0.0f};
   }
 
   float Glow(const Eigen::Vector3f& point_m, const Eigen::Vector3f& normal) const {

@@ -150,11 +150,19 @@ void TraceScene::AddFarGround(SensingTrace& trace, std::size_t pixel) const {
 
 void TraceScene::AddProps(SensingTrace& trace, std::span<const Prop> props) const {
   PropHit hit;
+  const Eigen::Vector3f axis = trace.direction[trace.grid.Pixels() / 2 + trace.grid.Columns() / 2];
+  float cone_cos = 1.0f;
+  for (const std::size_t corner :
+       {std::size_t{0}, static_cast<std::size_t>(trace.grid.Columns()) - 1,
+        trace.grid.Pixels() - static_cast<std::size_t>(trace.grid.Columns()), trace.grid.Pixels() - 1})
+    cone_cos = std::min(cone_cos, axis.dot(trace.direction[corner]));
   for (std::size_t p = 0; p < props.size(); ++p) {
     const Prop& prop = props[p];
     if (!prop.Solid()) continue;
     const Eigen::Vector3f towards = prop.position_m - trace.camera_m;
     const float distance2 = towards.squaredNorm(), radius2 = prop.radius_m * prop.radius_m;
+    // Outside the cone around the picture no ray can come near.
+    if (towards.dot(axis) < cone_cos * std::sqrt(distance2) - 1.5f * prop.radius_m) continue;
     for (std::size_t i = 0; i < trace.direction.size(); ++i) {
       const float along = towards.dot(trace.direction[i]);
       if (along < 0.0f || distance2 - along * along > radius2) continue;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "engine/core/check.h"
@@ -74,6 +75,38 @@ TEST(Trace, DistancesAndNormalsAreThoseOfTheGround) {
     EXPECT_NEAR(point_m.z(), 0.25f * point_m.x(), 2e-3f);
     EXPECT_NEAR((trace.normal[i] - up).norm(), 0.0f, 1e-4f);
   }
+}
+
+TEST(Trace, PacketsMeetWhatSingleRaysMeet) {
+  std::vector<Tree> trees;
+  for (int i = 0; i < 60; ++i)
+    trees.push_back({.x_m = 120.0 + 13.0 * (i % 10),
+                     .y_m = 150.0 + 17.0 * (i / 10),
+                     .ground_m = 0,
+                     .height_m = 12.0 + i % 7,
+                     .trunk_radius_m = 0.3,
+                     .crown_radius_m = 2.5,
+                     .crown_depth_m = 8});
+  const auto scene = FireScene([](double, double) { return 0.0; }, {380, 380}, trees);
+  const Pose pose = LookFrom(90, 190, 18, 3, 8);
+  const Ambience noon = Noon();
+  const SensingTrace trace = TraceScene(*scene).Trace(pose, SensingConfig(), kGrid, noon, {});
+  int met = 0;
+  for (std::size_t i = 0; i < kGrid.Pixels(); ++i) {
+    const Eigen::Vector3d direction = trace.direction[i].cast<double>();
+    const double single_m = scene->Geometry().Distance(pose.position_m, direction, 2000.0);
+    if (trace.material[i] == Material::kSky || trace.material[i] == Material::kFarGround) {
+      EXPECT_TRUE(std::isinf(single_m)) << i;
+      continue;
+    }
+    ++met;
+    EXPECT_NEAR(trace.distance_m[i], single_m, 1e-3 + 1e-4 * single_m) << i;
+    if (trace.material[i] != Material::kTerrain) continue;
+    const Eigen::Vector3d point_m = trace.PointM(i).cast<double>() + Eigen::Vector3d(0, 0, 0.05);
+    const bool hidden = scene->Geometry().Occluded(point_m, point_m + 590.0 * noon.to_sun.cast<double>());
+    EXPECT_EQ(trace.sunlit[i], hidden ? 0 : 1) << i;
+  }
+  EXPECT_GT(met, 2000);
 }
 
 TEST(Trace, ATreeHidesTheGroundAndIsKnownByItsIndex) {
