@@ -81,7 +81,7 @@ class FoldedDetector(nn.Module):
 
 
 def to_input(frames: np.ndarray) -> torch.Tensor:
-    pixels = torch.from_numpy(np.ascontiguousarray(frames)).permute(0, 3, 1, 2).float()
+    pixels = torch.from_numpy(np.array(frames)).permute(0, 3, 1, 2).float()
     return (pixels - PIXEL_OFFSET) * PIXEL_SCALE
 
 

@@ -43,7 +43,7 @@ def integer_logits(network, scales: list[dict], frames: np.ndarray, batch: int =
     """Sums in doubles, where these integers are exact; the rest in single precision, operation by operation."""
     parts = []
     for i in range(0, len(frames), batch):
-        x = torch.from_numpy(np.ascontiguousarray(frames[i:i + batch])).permute(0, 3, 1, 2).double()
+        x = torch.from_numpy(np.array(frames[i:i + batch])).permute(0, 3, 1, 2).double()
         for layer, (weight, bias) in enumerate(network.layers):
             q = scales[layer]
             limit = weight_limit(q["input_max"])
