@@ -9,12 +9,7 @@ if(ED3R_OPENBLAS_LIBRARY AND ED3R_OPENBLAS_INCLUDE)
   set(ED3R_BENCH_OPENBLAS ed3r_bench_openblas)
 endif()
 
-# Debian's CMake package of oneDNN asks for OpenCL; the CPU library does not need it.
-find_library(ED3R_ONEDNN_LIBRARY dnnl)
-find_path(ED3R_ONEDNN_INCLUDE dnnl.hpp)
-if(ED3R_ONEDNN_LIBRARY AND ED3R_ONEDNN_INCLUDE)
-  set(ED3R_BENCH_ONEDNN "${ED3R_ONEDNN_LIBRARY}" OpenMP::OpenMP_CXX)
-endif()
+set(ED3R_BENCH_ONEDNN ed3r_onednn)
 
 find_package(Torch QUIET)
 if(Torch_FOUND)

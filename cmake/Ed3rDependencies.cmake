@@ -33,3 +33,15 @@ foreach(module core imgproc imgcodecs)
   find_library(ED3R_OPENCV_${module} opencv_${module} REQUIRED)
   target_link_libraries(ed3r_opencv INTERFACE ${ED3R_OPENCV_${module}})
 endforeach()
+
+# Debian's CMake package of oneDNN asks for OpenCL; the CPU library does not need it.
+find_library(ED3R_ONEDNN_LIBRARY dnnl REQUIRED)
+find_path(ED3R_ONEDNN_INCLUDE dnnl.hpp REQUIRED)
+add_library(ed3r_onednn INTERFACE)
+target_include_directories(ed3r_onednn SYSTEM INTERFACE "${ED3R_ONEDNN_INCLUDE}")
+target_link_libraries(ed3r_onednn INTERFACE "${ED3R_ONEDNN_LIBRARY}" OpenMP::OpenMP_CXX)
+
+# The network runner of OpenCV apart from the rest: only users' own detectors need it.
+find_library(ED3R_OPENCV_dnn opencv_dnn REQUIRED)
+add_library(ed3r_opencv_dnn INTERFACE)
+target_link_libraries(ed3r_opencv_dnn INTERFACE ed3r_opencv "${ED3R_OPENCV_dnn}")

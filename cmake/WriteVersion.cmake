@@ -1,7 +1,8 @@
 # Run at every build: writes OUTPUT only when something changed. A result is a function of (sweep, seed, code), so the
 # code's identity is a hash of the sources that results depend on; the commit is told beside it.
 file(GLOB_RECURSE sources RELATIVE "${SOURCE_DIR}"
-  "${SOURCE_DIR}/kernels/*.cc" "${SOURCE_DIR}/kernels/*.h" "${SOURCE_DIR}/engine/*.cc" "${SOURCE_DIR}/engine/*.h")
+  "${SOURCE_DIR}/kernels/*.cc" "${SOURCE_DIR}/kernels/*.h" "${SOURCE_DIR}/engine/*.cc" "${SOURCE_DIR}/engine/*.h"
+  "${SOURCE_DIR}/engine/*.ed3rnet")
 list(FILTER sources EXCLUDE REGEX "^(engine/app|kernels/bench|engine/store|engine/schedule)/")
 list(SORT sources)
 set(all "")

@@ -14,11 +14,14 @@ namespace ed3r {
 // Candidates of the widest tile (AVX-512: 3 vectors of 16).
 inline constexpr int kMaxTile = 48;
 
-// Dropout of one step: neuron j of row r is dropped when hash(key, counter(r, j)) >> 1 < threshold.
+// Dropout of one step. Every row of the batch and every hidden neuron has a random key; neuron j of row r is
+// dropped when int32(z) < limit for y = row_keys[r] ^ neuron_keys[j], z = (y ^ y >> 15) 0x846ca68b. Mixing
+// the keys well once leaves five cheap instructions for a draw.
 struct DropoutDraws {
-  std::uint32_t key0, key1;
-  std::uint32_t threshold;  // p 2^31
-  float scale;              // 1 / (1 - p)
+  const std::uint32_t* row_keys;     // of the batch
+  const std::uint32_t* neuron_keys;  // of the hidden layers one after the other, each padded to whole blocks
+  std::int32_t limit;                // (p - 1/2) 2^32
+  float scale;                       // 1 / (1 - p)
 };
 
 // One sub-block of a batch, n <= kTrainRows rows.

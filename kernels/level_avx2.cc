@@ -10,8 +10,6 @@ namespace {
 struct V {
   using F = __m256;
   static constexpr int kLanes = 8;
-  // 16 registers: 12 sums, 3 inputs, 1 broadcast weight.
-  static constexpr int kTileOutputs = 4, kTileVectors = 3;
   static constexpr int kGemmRows = 6, kGemmVectors = 12;
 
   static F Load(const float* p) { return _mm256_loadu_ps(p); }
@@ -30,18 +28,12 @@ struct V {
     return _mm256_and_ps(_mm256_cmp_ps(h, _mm256_setzero_ps(), _CMP_GT_OQ), x);
   }
 
-  // As in level_scalar.h.
-  static F Dropout(F x, std::uint32_t counter, const DropoutDraws& draws) {
-    const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-    __m256i h = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(counter)), lanes);
-    h = _mm256_xor_si256(h, _mm256_set1_epi32(static_cast<int>(draws.key0)));
-    h = _mm256_mullo_epi32(_mm256_xor_si256(h, _mm256_srli_epi32(h, 16)), _mm256_set1_epi32(0x7feb352d));
-    h = _mm256_xor_si256(h, _mm256_set1_epi32(static_cast<int>(draws.key1)));
-    h = _mm256_mullo_epi32(_mm256_xor_si256(h, _mm256_srli_epi32(h, 15)),
-                           _mm256_set1_epi32(static_cast<int>(0x846ca68bu)));
-    h = _mm256_xor_si256(h, _mm256_srli_epi32(h, 16));
-    const __m256i limit = _mm256_set1_epi32(static_cast<int>(draws.threshold));
-    return _mm256_andnot_ps(_mm256_castsi256_ps(_mm256_cmpgt_epi32(limit, _mm256_srli_epi32(h, 1))), x);
+  static F Dropout(F x, std::uint32_t row_key, const std::uint32_t* neuron_keys, std::int32_t limit) {
+    const __m256i y = _mm256_xor_si256(_mm256_set1_epi32(static_cast<int>(row_key)),
+                                       _mm256_loadu_si256(reinterpret_cast<const __m256i*>(neuron_keys)));
+    const __m256i z = _mm256_mullo_epi32(_mm256_xor_si256(y, _mm256_srli_epi32(y, 15)),
+                                         _mm256_set1_epi32(static_cast<int>(0x846ca68bu)));
+    return _mm256_andnot_ps(_mm256_castsi256_ps(_mm256_cmpgt_epi32(_mm256_set1_epi32(limit), z)), x);
   }
 
   static void Transpose(const float* from, float* to) { TransposeBlock(from, to); }

@@ -12,7 +12,6 @@ namespace {
 struct V {
   using F = float;
   static constexpr int kLanes = 1;
-  static constexpr int kTileOutputs = 4, kTileVectors = 3;
   static constexpr int kGemmRows = 2, kGemmVectors = 16;
 
   static F Load(const float* p) { return *p; }
@@ -28,15 +27,9 @@ struct V {
   static F Relu(F z) { return 0.0f > z ? 0.0f : z; }
   static F WherePositive(F h, F x) { return h > 0.0f ? x : 0.0f; }
 
-  // Two multiply-xorshift rounds, keyed before each: enough mixing for a coin, cheap in every instruction
-  // set.
-  static F Dropout(F x, std::uint32_t counter, const DropoutDraws& draws) {
-    std::uint32_t h = counter ^ draws.key0;
-    h = (h ^ (h >> 16)) * 0x7feb352du;
-    h ^= draws.key1;
-    h = (h ^ (h >> 15)) * 0x846ca68bu;
-    h ^= h >> 16;
-    return (h >> 1) < draws.threshold ? 0.0f : x;
+  static F Dropout(F x, std::uint32_t row_key, const std::uint32_t* neuron_keys, std::int32_t limit) {
+    const std::uint32_t y = row_key ^ *neuron_keys;
+    return static_cast<std::int32_t>((y ^ (y >> 15)) * 0x846ca68bu) < limit ? 0.0f : x;
   }
 
   static void Transpose(const float* from, float* to) {

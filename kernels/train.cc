@@ -36,11 +36,18 @@ std::uint64_t Mix(std::uint64_t z) {  // the finalizer of SplitMix64
   return z ^ (z >> 31);
 }
 
-DropoutDraws DrawsOf(const TrainOptions& options, std::uint64_t step) {
-  const std::uint64_t key = Mix(Mix(options.seed + 0x9e3779b97f4a7c15u) + step);
-  return {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32),
-          static_cast<std::uint32_t>(std::lround(options.dropout * 2147483648.0)),
-          static_cast<float>(1.0 / (1.0 - options.dropout))};
+// The keys of one step: two from each 64-bit draw.
+void DrawKeys(std::uint64_t seed, std::uint64_t step, std::vector<std::uint32_t>* keys) {
+  const std::uint64_t stream = Mix(Mix(seed + 0x9e3779b97f4a7c15u) + step);
+  for (std::size_t k = 0; k < keys->size(); k += 2) {
+    const std::uint64_t draw = Mix(stream + k * 0x9e3779b97f4a7c15u);
+    (*keys)[k] = static_cast<std::uint32_t>(draw);
+    (*keys)[k + 1] = static_cast<std::uint32_t>(draw >> 32);
+  }
+}
+
+std::int32_t DropoutLimit(double p) {
+  return static_cast<std::int32_t>(std::min(std::round((p - 0.5) * 4294967296.0), 2147483647.0));
 }
 
 }  // namespace
@@ -73,7 +80,9 @@ struct DenseTrainer::State {
   AlignedFloats gradients;  // one packed form per sub-block
   AlignedFloats scratch;    // one per thread
   std::vector<double> squares;
-  int blocks = 0;  // of the last step
+  std::size_t hidden = 0;                   // hidden neurons, layers padded to whole blocks
+  std::vector<std::uint32_t> dropout_keys;  // of the hidden neurons, then of the rows
+  int blocks = 0;                           // of the last step
   std::uint64_t steps = 0;
   double beta1_power = 1.0, beta2_power = 1.0;  // beta^steps, by multiplication: pow may differ between CPUs
 };
@@ -92,6 +101,8 @@ DenseTrainer::State::State(const DenseShape& the_shape, const TrainOptions& the_
   gradients = AlignedFloats(size * max_blocks);
   scratch = AlignedFloats(TrainScratchFloats(shape) * options.threads);
   squares.resize(max_blocks);
+  for (int l = 1; l < shape.layers; ++l) hidden += PadToBlock(shape.sizes[l]);
+  dropout_keys.resize(hidden + options.max_rows + options.max_rows % 2);
 }
 
 void DenseTrainer::State::FillTransposed() {
@@ -138,7 +149,9 @@ double DenseTrainer::Step(const float* inputs, const float* targets, const std::
       s.m.data(),
       s.v.data(),
       s.transposed.data()};
-  const DropoutDraws draws = DrawsOf(o, s.steps);
+  DrawKeys(o.seed, s.steps, &s.dropout_keys);
+  const DropoutDraws draws{s.dropout_keys.data() + s.hidden, s.dropout_keys.data(), DropoutLimit(o.dropout),
+                           static_cast<float>(1.0 / (1.0 - o.dropout))};
   const std::size_t scratch = TrainScratchFloats(s.shape);
 #pragma omp parallel num_threads(o.threads) if (o.threads > 1)
   {

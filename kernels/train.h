@@ -28,7 +28,9 @@
 
 namespace ed3r {
 
-inline constexpr int kTrainRows = 32;  // rows of a sub-block: part of the definition of the result
+// Rows of a sub-block: part of the definition of the result. With 32 a step takes 2 % longer; 128 gain 1 % more but leave
+// nothing to a second thread.
+inline constexpr int kTrainRows = 64;
 
 struct TrainOptions {
   double learning_rate = 5e-6;

@@ -3,7 +3,7 @@
 //   V::Mul Div Sqrt
 //   V::FusedNegative(a, b, c)       c - a b, fused
 //   V::WherePositive(h, x)          h > 0 ? x : 0
-//   V::Dropout(x, counter, draws)   x, or 0 where lane l's hash of counter + l drops it
+//   V::Dropout(x, row_key, neuron_keys, limit)   x, or 0 where DropoutDraws drops it
 //   V::Transpose(from, to)          16 x 16 floats
 #pragma once
 
@@ -19,13 +19,13 @@ namespace {
 
 // relu, then inverted dropout.
 struct DropoutRelu {
-  DropoutDraws draws;
-  std::uint32_t counter;      // of row 0, column 0
-  std::uint32_t row_counter;  // from one row to the next
+  const std::uint32_t* row_keys;
+  const std::uint32_t* neuron_keys;
+  std::int32_t limit;
+  float scale;
 
   V::F operator()(V::F z, int row, int column) const {
-    const std::uint32_t first = counter + static_cast<std::uint32_t>(row) * row_counter + column;
-    return V::Dropout(V::Mul(V::Relu(z), V::Set1(draws.scale)), first, draws);
+    return V::Dropout(V::Mul(V::Relu(z), V::Set1(scale)), row_keys[row], neuron_keys + column, limit);
   }
 };
 
@@ -70,9 +70,8 @@ inline void GatherRows(const TrainBlock& t, const TrainLayout& at) {
 
 inline void Forward(const TrainBlock& t, const TrainLayout& at) {
   const DenseShape& shape = *t.shape;
-  std::uint32_t hidden = 0;  // padded hidden neurons of a row: its dropout counters
-  for (int l = 1; l < shape.layers; ++l) hidden += at.width[l];
-  std::uint32_t counter = t.first_row * hidden;
+  DropoutRelu epilogue{t.dropout.row_keys + t.first_row, t.dropout.neuron_keys, t.dropout.limit,
+                       t.dropout.scale};
   const float* base = t.packed;
   for (int l = 0; l < shape.layers; ++l) {
     const std::size_t stride = PackedBlockStride(shape, l);
@@ -95,8 +94,8 @@ inline void Forward(const TrainBlock& t, const TrainLayout& at) {
     if (l + 1 == shape.layers) {
       RunGemm(g, Plain());
     } else {
-      RunGemm(g, DropoutRelu{t.dropout, counter, hidden});
-      counter += at.width[l + 1];
+      RunGemm(g, epilogue);
+      epilogue.neuron_keys += at.width[l + 1];
     }
     base += stride * blocks;
   }
@@ -115,9 +114,31 @@ inline double OutputDelta(const TrainBlock& t, const TrainLayout& at, float* del
   return squares;
 }
 
+// dL/dW of the single output, across inputs: across outputs 15 of 16 lanes would be padding.
+inline void OutputWeightGradient(const TrainBlock& t, const TrainLayout& at, int l, const float* delta,
+                                 float* spare, float* gradient) {
+  RunGemm({.a = delta,
+           .a_row = 0,
+           .a_k = kDenseBlock,
+           .b = at.h[l],
+           .b_block = kDenseBlock,
+           .b_k = at.width[l],
+           .init = nullptr,
+           .init_row = 0,
+           .init_block = 0,
+           .c = spare,
+           .c_row = 0,
+           .c_block = kDenseBlock,
+           .rows = 1,
+           .blocks = static_cast<int>(at.width[l]) / kDenseBlock,
+           .k = t.n},
+          Plain());
+  for (int i = 0; i < t.shape->sizes[l]; ++i) gradient[(i + 1) * kDenseBlock] = spare[i];
+}
+
 // dL/dW[i] = sum over the rows of h[i] delta, dL/db = sum of delta.
 inline void WeightGradient(const TrainBlock& t, const TrainLayout& at, int l, const float* delta,
-                           float* gradient) {
+                           float* spare, float* gradient) {
   static constexpr float kOne = 1.0f;
   const std::size_t stride = PackedBlockStride(*t.shape, l);
   Gemm g{.a = at.h[l],
@@ -135,7 +156,10 @@ inline void WeightGradient(const TrainBlock& t, const TrainLayout& at, int l, co
          .rows = t.shape->sizes[l],
          .blocks = static_cast<int>(at.width[l + 1]) / kDenseBlock,
          .k = t.n};
-  RunGemm(g, Plain());
+  if (l + 1 == t.shape->layers)
+    OutputWeightGradient(t, at, l, delta, spare, gradient);
+  else
+    RunGemm(g, Plain());
   g.a = &kOne;
   g.a_row = g.a_k = 0;
   g.c = gradient;
@@ -176,8 +200,9 @@ double BlockGradient(const TrainBlock& t) {
   float* gradient = t.gradient + PackedFloats(*t.shape);
   for (int l = t.shape->layers - 1; l >= 0; --l, turn ^= 1) {
     gradient -= PackedBlockStride(*t.shape, l) * (at.width[l + 1] / kDenseBlock);
-    WeightGradient(t, at, l, at.delta[turn], gradient);
-    if (l > 0) InputDelta(t, at, l, at.delta[turn], at.delta[turn ^ 1]);
+    float* other = at.delta[turn ^ 1];
+    WeightGradient(t, at, l, at.delta[turn], other, gradient);
+    if (l > 0) InputDelta(t, at, l, at.delta[turn], other);
   }
   return squares;
 }

@@ -7,18 +7,32 @@
 #include "engine/core/check.h"
 #include "studies/fit/fit.h"
 #include "studies/fit/report.h"
+#include "studies/fit/self_check.h"
 
 namespace ed3r {
 namespace {
 
 struct Options {
   FitOptions fit;
+  SelfCheckOptions self_check{.model = "momentum", .truth = {}, .fits = 0, .log = {}};
   std::vector<std::string> set;
   std::string out;
   bool json = false;
 };
 
+int SelfCheck(const Options& options) {
+  const SelfCheckReport report = RunSelfCheck(options.self_check);
+  if (options.json)
+    fmt::print("{}\n", ToJson(report).dump(2));
+  else
+    PrintSelfCheck(report, std::cout);
+  return kDone;
+}
+
 int Fit(Options options) {
+  if (options.self_check.fits > 0) return SelfCheck(options);
+  if (options.fit.logs.empty())
+    throw UserError("fit: a flight log is needed, e.g. sweeps/data/flight/m100_flights.csv");
   for (const std::string& setting : options.set) {
     const auto equals = setting.find('=');
     if (equals == std::string::npos)
@@ -40,7 +54,7 @@ Command AddFit(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* parser = program.add_subcommand(
       "fit", "Energy parameters fitted to flight logs: values, 95 % intervals, residuals");
-  parser->add_option("LOG", options->fit.logs, "Flight logs (CSV)")->required();
+  parser->add_option("LOG", options->fit.logs, "Flight logs (CSV)");
   parser->add_option("--format", options->fit.format, "Columns: m100 | ardupilot | FILE.yaml; default m100");
   parser->add_option("--evaluate", options->fit.evaluate, "Logs that only judge the fit")
       ->allow_extra_args(false);
@@ -49,6 +63,15 @@ Command AddFit(CLI::App& program) {
   parser->add_option("--set", options->set, "robot.KEY=VALUE of the airframe that flew")
       ->allow_extra_args(false);
   parser->add_option("--out", options->out, "Folder for report, fitted.yaml, flights.csv and rows.csv");
+  CLI::Option* check =
+      parser
+          ->add_option(
+              "--self-check", options->self_check.fits,
+              "Instead of LOG: fit this many synthetic logs and say how often the intervals hold the truth")
+          ->check(CLI::Range(1, 1000000))
+          ->excludes("LOG");
+  parser->add_option("--model", options->self_check.model, "Model of the synthetic logs; default momentum")
+      ->needs(check);
   parser->add_flag("--json", options->json, "Print JSON");
   return {parser, [options] { return Fit(*options); }};
 }

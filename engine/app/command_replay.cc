@@ -7,6 +7,7 @@
 #include "engine/app/commands.h"
 #include "engine/app/stored_run.h"
 #include "engine/core/check.h"
+#include "engine/perception/pixels/pixel_sensor.h"
 #include "engine/store/digest.h"
 #include "engine/world/map_picture.h"
 
@@ -16,6 +17,7 @@ namespace {
 struct Options {
   std::string dir, mission, out;
   std::string cache = "results/cache";
+  std::vector<int> frames;  // timesteps
 };
 
 class TraceFile : public TraceSink {
@@ -52,6 +54,29 @@ void WriteSteps(const MissionRecord& record, const std::filesystem::path& path) 
   file << "\n";
 }
 
+// What the camera saw after the move of some timesteps. A mission of the fast tier can be looked at, too: with the
+// detectors of its configuration.
+void WriteFrames(const MissionTask& task, const MissionRecord& flown, const std::vector<int>& timesteps,
+                 const std::filesystem::path& out) {
+  if (timesteps.empty()) return;
+  for (const int k : timesteps)
+    if (k < 1 || k > flown.timesteps)
+      throw UserError(
+          fmt::format("--frames {}: is not allowed; the mission has timesteps 1 .. {}", k, flown.timesteps));
+  PixelTier own;
+  if (task.pixels == nullptr)
+    own = {std::make_shared<const TraceScene>(task.scene), LoadDetectors(task.config.perception.detector)};
+  const PixelTier& tier = task.pixels != nullptr ? *task.pixels : own;
+  const SensorScenario scenario{static_cast<int>(flown.site), task.seed, task.scenario};
+  for (const int k : timesteps) {
+    const TimestepRecord& step = flown.steps[static_cast<std::size_t>(k - 1)];
+    const Pose pose{{step.x_m, step.y_m, step.z_m}, step.yaw_rad, step.tilt_rad};
+    const std::string stem = (out / fmt::format("step{:03}", k)).string();
+    WriteSensingPictures(tier, task.config, scenario, pose, static_cast<std::uint32_t>(k), stem);
+    fmt::print("{}_frames.png, {}_large.png\n", stem, stem);
+  }
+}
+
 int Replay(const Options& options) {
   StoredRun run(options.dir, options.cache);
   const RunId id = run.Find(options.mission);
@@ -73,6 +98,7 @@ int Replay(const Options& options) {
   for (const TimestepRecord& step : flown.steps) path_m.emplace_back(step.x_m, step.y_m, step.z_m);
   WriteMapPicture(task.scene, (out / "map.png").string(),
                   {.path_m = path_m, .site = static_cast<int>(flown.site)});
+  WriteFrames(task, flown, options.frames, out);
   fmt::print("{}: {} in {} timesteps, {:.1f} s, {:.2f} kJ; {}\n", options.mission,
              NameOf(static_cast<Outcome>(flown.outcome)), flown.timesteps, flown.duration_s,
              flown.total_j / 1000.0,
@@ -90,6 +116,11 @@ Command AddReplay(CLI::App& program) {
   parser->add_option("DIR", options->dir, "Run directory")->required();
   parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. rbs/12")->required();
   parser->add_option("--out", options->out, "Folder for trace and map; default DIR/replay/MISSION");
+  parser
+      ->add_option("--frames", options->frames,
+                   "Also pictures of what the camera saw in these timesteps, e.g. 1,4")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache");
   return {parser, [options] { return Replay(*options); }};
 }

@@ -48,7 +48,7 @@ int Run(const Options& options) {
   const SweepPlan plan = options.sweep.Load();
   const Shard shard = ParseShard(options.shard);
   ThreadsFor(options.threads);  // refused before worlds are built
-  const Worlds worlds = LoadWorlds(plan);
+  const Inputs inputs(plan);
   InstallInterruptHandler();
 
   SweepOptions sweep;
@@ -58,9 +58,10 @@ int Run(const Options& options) {
   sweep.schedule.threads = options.threads;
   sweep.schedule.stop = &InterruptFlag();
   sweep.schedule.quiet = options.quiet;
+  sweep.half_width = HalfWidth;
   sweep.notes = DescribeMachine();
   sweep.notes.merge(NotesOf(options.sweep));
-  const SweepSummary summary = RunSweep(plan, worlds, sweep);
+  const SweepSummary summary = RunSweep(plan, inputs, sweep);
 
   if (!options.quiet) {
     if (!summary.flown.interrupted) fmt::print("{}\n", ReportText(MakeReport(LoadRun(sweep.dir))));

@@ -23,10 +23,12 @@ Command AddDigest(CLI::App& program);
 Command AddMerge(CLI::App& program);
 Command AddReplay(CLI::App& program);
 Command AddExplain(CLI::App& program);
+Command AddDetect(CLI::App& program);
 Command AddFit(CLI::App& program);
 Command AddParams(CLI::App& program);
 Command AddPhysics(CLI::App& program);
 Command AddWorld(CLI::App& program);
+Command AddFrames(CLI::App& program);
 Command AddDoctor(CLI::App& program);
 
 constexpr int kDone = 0;

@@ -14,7 +14,7 @@ namespace {
 std::vector<Command> AddCommands(CLI::App& program) {
   return {AddRun(program),   AddPlan(program),   AddStatus(program),  AddReport(program), AddDigest(program),
           AddMerge(program), AddReplay(program), AddExplain(program), AddParams(program), AddPhysics(program),
-          AddFit(program),   AddWorld(program),  AddDoctor(program)};
+          AddFit(program),   AddWorld(program),  AddFrames(program),  AddDetect(program), AddDoctor(program)};
 }
 
 int Main(int argc, char** argv) {

@@ -55,7 +55,7 @@ std::map<std::string, std::string> NotesOf(const SweepArguments& arguments) {
 }
 
 StoredRun::StoredRun(const std::string& dir, const std::string& cache_dir)
-    : reader_(dir), cache_dir_(cache_dir), plan_(ReloadPlan(reader_)), worlds_(LoadWorlds(plan_)) {}
+    : reader_(dir), cache_dir_(cache_dir), plan_(ReloadPlan(reader_)), inputs_(plan_) {}
 
 RunId StoredRun::Find(const std::string& mission) const {
   const auto slash = mission.rfind('/');
@@ -83,7 +83,7 @@ MissionTask StoredRun::Task(const RunId& id) {
   const Arm& arm = plan_.stages[static_cast<std::size_t>(id.stage)].arms[static_cast<std::size_t>(id.arm)];
   if (networks_ == nullptr && !FindStrategy(arm.config.mission.strategy).networks.empty())
     networks_ = TrainNetworks(plan_, {reader_.dir(), cache_dir_, ThreadsFor(0), nullptr});
-  return TaskOf(plan_, worlds_, networks_.get(), id);
+  return TaskOf(plan_, inputs_, networks_.get(), id);
 }
 
 }  // namespace ed3r

@@ -1,4 +1,4 @@
-// A run directory brought back to life: its plan, worlds and networks, so that a stored mission can be flown again.
+// A run directory brought back to life: its plan, inputs and networks, so that a stored mission can be flown again.
 #pragma once
 
 #include <map>
@@ -32,7 +32,7 @@ class StoredRun {
   ResultReader reader_;
   std::string cache_dir_;
   SweepPlan plan_;
-  Worlds worlds_;
+  Inputs inputs_;
   std::unique_ptr<NetworkShelf> networks_;
 };
 

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 
 #include "engine/agents/strategy.h"
 #include "engine/core/check.h"
+#include "engine/core/suggest.h"
 #include "engine/sweep/sweep_file.h"
+#include "studies/metrics/definitions.h"
 
 namespace ed3r {
 namespace {
@@ -20,6 +23,16 @@ std::optional<Integer> ParseOption(const char* option, const std::string& text, 
   if (error != std::errc() || end != text.data() + text.size() || value < min || value > max)
     throw UserError(fmt::format("{}: '{}' is not allowed; allowed: {} .. {}", option, text, min, max));
   return value;
+}
+
+std::string CheckMetricName(const std::string& name) {
+  std::vector<std::string> names;
+  for (const MetricDefinition& metric : MetricDefinitions())
+    if (metric.estimate != Estimate::kMaximum) names.emplace_back(metric.name);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return "";
+  const std::string nearest = NearestWord(name, names);
+  return fmt::format("metric: '{}' is not allowed; allowed: {}{}", name, fmt::join(names, " | "),
+                     nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
 }
 
 }  // namespace
@@ -38,6 +51,7 @@ SweepPlan SweepArguments::Load() const {
   overrides.seed = ParseOption<std::uint64_t>("--seed", seed, 0, UINT64_MAX);
   overrides.missions = ParseOption<int>("--missions", missions, 1, static_cast<int>(kMaxMissions));
   return LoadSweep(file, overrides, [](const std::string& key, const std::string& value) {
+    if (key == "precision.metric") return CheckMetricName(value);
     return key == "mission.strategy" ? CheckStrategyName(value) : std::string();
   });
 }

@@ -47,11 +47,11 @@ struct EnergyConfig {
   MoveOrder move_order = MoveOrder::kHorizontalFirst;
   MoveTime move_time = MoveTime::kFlown;
   double paper_efficiency = 1.0;
-  double momentum_efficiency = 0.853;
-  double induced_factor = 1.256;
-  double profile_share = 0.374;
-  double interference = 0.392;
-  double drag_area_m2 = 0.094;
+  double momentum_efficiency = 0.713;
+  double induced_factor = 1.456;
+  double profile_share = 0.0;
+  double interference = 0.577;
+  double drag_area_m2 = 0.0925;
 
   template <class Self, class Visitor>
   static void Describe(Self& self, Visitor&& visit) {

@@ -9,14 +9,17 @@
 // of rendered pixels can fit them; until then they are calibrated on the RBS row alone.
 #pragma once
 
+#include "engine/config/detector.h"
 #include "engine/config/field.h"
+#include "engine/config/render.h"
 
 namespace ed3r {
 
-enum class PerceptionTier { kProfile };
+enum class PerceptionTier { kProfile, kPixels };
 template <>
 struct EnumNames<PerceptionTier> {
-  static constexpr EnumName<PerceptionTier> kNames[] = {{PerceptionTier::kProfile, "profile"}};
+  static constexpr EnumName<PerceptionTier> kNames[] = {{PerceptionTier::kProfile, "profile"},
+                                                        {PerceptionTier::kPixels, "pixels"}};
 };
 
 // Response of one detection model.
@@ -71,6 +74,8 @@ struct PerceptionConfig {
   ResponseConfig full;
   ResponseConfig quantized{
       .half_signal = 0.00066, .slope = 3.0, .ceiling = 0.93, .view_sigma = 0.7, .frame_sigma = 0.6};
+  RenderConfig render;
+  DetectorConfig detector;
 
   template <class Self, class Visitor>
   static void Describe(Self& self, Visitor&& visit) {
@@ -106,6 +111,8 @@ struct PerceptionConfig {
            .meaning = "camera tilt above which distractors mislead"});
     visit.Nested("full", self.full);
     visit.Nested("quantized", self.quantized);
+    visit.Nested("render", self.render);
+    visit.Nested("detector", self.detector);
   }
 };
 

@@ -48,12 +48,14 @@ ProgressLine::ProgressLine(std::FILE* out, bool quiet)
 
 ProgressLine::~ProgressLine() { Clear(); }
 
-void ProgressLine::Show(const ProgressState& state) {
+void ProgressLine::Show(const ProgressState& state) { Show(ProgressText(state)); }
+
+void ProgressLine::Show(const std::string& text) {
   if (!enabled_) return;
   const auto now = std::chrono::steady_clock::now();
   if (last_ && now - *last_ < kShortestPause) return;
   last_ = now;
-  const std::string line = ProgressText(state).substr(0, Width(out_) - 1);
+  const std::string line = text.substr(0, Width(out_) - 1);
   std::fprintf(out_, "\r%s\033[K", line.c_str());
   std::fflush(out_);
   visible_ = true;

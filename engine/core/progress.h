@@ -33,6 +33,7 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void Show(const ProgressState& state);
+  void Show(const std::string& text);
   void Clear();
 
  private:

@@ -26,6 +26,9 @@ enum class Purpose : std::uint32_t {
   kWorld = 13,             // terrain, trees
   kTraining = 14,          // initial weights, shuffles, dropout
   kBootstrap = 15,         // resampling in studies
+  kAmbience = 16,          // sun, weather, season and kinds of distractors of a mission
+  kRendering = 17,         // flicker, jitter and sensor noise of a sensing period
+  kDataSet = 18,           // poses of the views in a training set
 };
 
 // One stream of draws. Cheap to make (no state beyond the counter); make one where it is used.

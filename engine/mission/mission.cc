@@ -12,8 +12,8 @@
 #include "engine/core/interrupt.h"
 #include "engine/mission/accounts.h"
 #include "engine/mission/scenario.h"
-#include "engine/perception/detector.h"
-#include "engine/perception/view.h"
+#include "engine/perception/pixels/pixel_sensor.h"
+#include "engine/perception/sensor.h"
 #include "engine/radio/link.h"
 #include "engine/robot/ledger.h"
 
@@ -37,6 +37,14 @@ AgentContext AgentsOf(const MissionTask& task, const Strategy& strategy) {
           EpsilonOfMission(task.config.agents, strategy, task.mission)};
 }
 
+std::unique_ptr<Sensor> SensorOf(const MissionTask& task, const Scenario& scenario) {
+  const SensorScenario seen{scenario.site, task.seed, task.scenario};
+  if (task.config.perception.tier == PerceptionTier::kProfile)
+    return MakeProfileSensor(task.scene, task.config, seen);
+  ED3R_CHECK(task.pixels != nullptr, "the pixel tier needs its detectors");
+  return MakePixelSensor(*task.pixels, task.config, seen);
+}
+
 class Mission {
  public:
   explicit Mission(const MissionTask& task)
@@ -49,8 +57,7 @@ class Mission {
         flight_(task.scene, config_, scenario_.start, task.seed, task.scenario),
         controller_(AgentsOf(task, strategy_)),
         robot_(AgentsOf(task, strategy_)),
-        fire_(task.scene, scenario_.site),
-        distractors_(DrawDistractors(task.scene, config_.perception, task.seed, task.scenario)),
+        sensor_(SensorOf(task, scenario_)),
         battery_j_(config_.robot.BatteryJ()) {
     flight_.SetTrace(task.trace);
   }
@@ -80,8 +87,7 @@ class Mission {
   Flight flight_;
   RemoteController controller_;
   RobotAgent robot_;
-  const FireView fire_;
-  const std::vector<Distractor> distractors_;
+  const std::unique_ptr<Sensor> sensor_;
   double battery_j_;  // beta_k
   double distance_m_ = 0.0;
   std::vector<TimestepRecord> steps_;
@@ -156,18 +162,16 @@ RobotView Mission::OnboardView(const Arrival& arrival) const {
 }
 
 void Mission::Detect(const ExecutionDecision& execution, TimestepRecord& step) const {
-  const View view = fire_.Look(flight_.CurrentPose(), config_.sensing, config_.perception, distractors_);
   // The RC runs the Full model only.
   const DetectionModel model =
       execution.execution == Execution::kQuantized ? DetectionModel::kQuantized : DetectionModel::kFull;
-  const Score score = DetectFromProfile(view, config_.perception, model, config_.sensing.Frames(), task_.seed,
-                                        task_.scenario, static_cast<std::uint32_t>(step.k));
-  step.confidence_mean = score.mean;
-  step.confidence_sd = score.standard_deviation;
-  step.scs = score.scs;
-  step.fire_share = view.fire_share;
-  step.smoke_share = view.smoke_share;
-  step.fire_in_view = view.fire_in_view ? 1 : 0;
+  const Detection seen = sensor_->Sense(flight_.CurrentPose(), model, static_cast<std::uint32_t>(step.k));
+  step.confidence_mean = seen.score.mean;
+  step.confidence_sd = seen.score.standard_deviation;
+  step.scs = seen.score.scs;
+  step.fire_share = seen.fire_share;
+  step.smoke_share = seen.smoke_share;
+  step.fire_in_view = seen.fire_in_view ? 1 : 0;
 }
 
 ComputationCost Mission::OnboardCost(Execution execution, double cpu_hz) const {

@@ -13,6 +13,7 @@
 #include "engine/agents/robot_agent.h"
 #include "engine/config/config.h"
 #include "engine/mission/record.h"
+#include "engine/perception/pixels/pixel_sensor.h"
 #include "engine/robot/flight.h"
 #include "engine/world/scene.h"
 
@@ -33,6 +34,7 @@ struct DecisionProbe {
 struct MissionTask {
   const Scene& scene;
   const Config& config;
+  const PixelTier* pixels = nullptr;  // where perception.tier is pixels
   std::uint64_t seed = 0;
   std::uint32_t scenario = 0;
   int mission = 0;                          // its number within its arm, for the decay of epsilon (R20)

@@ -6,11 +6,10 @@
 
 #include "engine/config/perception.h"
 #include "engine/perception/score.h"
+#include "engine/perception/sensor.h"
 #include "engine/perception/view.h"
 
 namespace ed3r {
-
-enum class DetectionModel { kFull, kQuantized };
 
 // Keyed draws: both models meet the same fluctuation at a timestep, so that arms differ by the model alone.
 Score DetectFromProfile(const View& view, const PerceptionConfig& perception, DetectionModel model,

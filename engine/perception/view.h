@@ -41,6 +41,11 @@ class Camera {
   // Share of the image that a patch of the given area covers, turned fully towards the camera; 0 outside the frame.
   double ShareOf(const Eigen::Vector3d& point_m, double area_m2) const;
   const Eigen::Vector3d& PositionM() const { return position_m_; }
+  const Eigen::Vector3d& Right() const { return right_; }
+  const Eigen::Vector3d& Down() const { return down_; }
+  const Eigen::Vector3d& Forward() const { return forward_; }
+  double HalfWidth() const { return half_width_; }
+  double HalfHeight() const { return half_height_; }
 
  private:
   Eigen::Vector3d position_m_, right_, down_, forward_;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/rfnn/report.h"
-#include "engine/rfnn/sealed_file.h"
+#include "engine/core/sealed_file.h"
 
 namespace ed3r {
 

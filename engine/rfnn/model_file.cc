@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "engine/rfnn/curve_bytes.h"
-#include "engine/rfnn/sealed_file.h"
+#include "engine/core/sealed_file.h"
 
 namespace ed3r {
 namespace {

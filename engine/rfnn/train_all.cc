@@ -90,6 +90,10 @@ std::vector<std::shared_ptr<const Model>> TrainAll(std::span<const TrainJob> job
       };
     try {
       models[i] = TrainOne(jobs[i], paths[i], std::move(control));
+      if (options.on_done && models[i]) {
+        const std::lock_guard lock(reporting);
+        options.on_done(i);
+      }
     } catch (...) {
       errors[i] = std::current_exception();
     }

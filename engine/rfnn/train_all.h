@@ -19,6 +19,8 @@ struct TrainAllOptions {
   SimdLevel level = ActiveSimdLevel();
   // Called by one thread at a time; also for epochs of a job that stands in the list more than once.
   std::function<void(std::size_t job, int epoch, const EpochLoss& loss)> on_epoch;
+  // Likewise, when a network is there, trained or read.
+  std::function<void(std::size_t job)> on_done;
 };
 
 // networks[i] is the network of jobs[i]; null where `stop` came first: calling again continues there.

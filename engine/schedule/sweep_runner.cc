@@ -3,34 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
+#include <set>
 
-#include "engine/agents/strategy.h"
 #include "engine/core/check.h"
 #include "engine/core/version.h"
 #include "engine/mission/mission.h"
 #include "engine/mission/scenario.h"
-#include "engine/robot/airframe.h"
 #include "engine/store/store.h"
 
 namespace ed3r {
 namespace {
 
-void CheckArm(const Arm& arm, const Scene& scene, std::uint64_t seed) {
-  FindStrategy(arm.config.mission.strategy);
-  DealScenario(scene, arm.config.mission, seed, 0);
-  CheckFlyable(arm.config);
-}
-
-Recipe RecipeOf(const SweepPlan& plan, const Worlds& worlds,
+Recipe RecipeOf(const SweepPlan& plan, const Inputs& inputs,
                 const std::map<std::string, std::string>& notes) {
-  Recipe recipe;
-  recipe.plan_text = plan.CanonicalText();
-  recipe.code_version = ThisCode().source_hash;
-  for (const Stage& stage : plan.stages)
-    for (const Arm& arm : stage.arms)
-      recipe.worlds[arm.world] = worlds.at(arm.config.mission.world)->Fingerprint();
-  recipe.notes = notes;
-  return recipe;
+  return {.plan_text = plan.CanonicalText(),
+          .code_version = ThisCode().source_hash,
+          .inputs = inputs.Fingerprints(plan),
+          .notes = notes};
 }
 
 void Add(const RunSummary& part, RunSummary& sum) {
@@ -60,29 +50,13 @@ bool Complete(const SweepPlan& plan, const std::vector<RunId>& stored, const std
 
 }  // namespace
 
-Worlds LoadWorlds(const SweepPlan& plan) {
-  CheckTraining(plan);
-  Worlds worlds;
-  for (const Stage& stage : plan.stages) {
-    for (const Arm& arm : stage.arms) {
-      std::shared_ptr<const Scene>& scene = worlds[arm.config.mission.world];
-      if (!scene) scene = Scene::Load(arm.config.mission.world);
-      try {
-        CheckArm(arm, *scene, plan.seed);
-      } catch (const UserError& error) {
-        throw UserError(fmt::format("{}: arm {}: {}", plan.file, arm.name, error.what()));
-      }
-    }
-  }
-  return worlds;
-}
-
-MissionTask TaskOf(const SweepPlan& plan, const Worlds& worlds, const NetworkShelf* networks,
+MissionTask TaskOf(const SweepPlan& plan, const Inputs& inputs, const NetworkShelf* networks,
                    const RunId& id) {
   const Arm& arm =
       plan.stages.at(static_cast<std::size_t>(id.stage)).arms.at(static_cast<std::size_t>(id.arm));
-  const Scene& scene = *worlds.at(arm.config.mission.world);
+  const Scene& scene = inputs.SceneOf(arm.config);
   MissionTask task{.scene = scene, .config = arm.config, .seed = plan.seed};
+  task.pixels = inputs.PixelsOf(arm.config);
   task.scenario = static_cast<std::uint32_t>(arm.config.mission.first_scenario + id.mission);
   task.mission = id.mission;
   if (networks != nullptr) {
@@ -98,12 +72,12 @@ namespace {
 // One run of the stages of a plan.
 class Stages {
  public:
-  Stages(const SweepPlan& plan, const Worlds& worlds, const SweepOptions& options)
+  Stages(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options)
       : plan_(plan),
-        worlds_(worlds),
+        inputs_(inputs),
         options_(options),
         layout_(LayoutOf(plan)),
-        store_(ResultStore::Open(options.dir, RecipeOf(plan, worlds, options.notes), layout_)) {
+        store_(ResultStore::Open(options.dir, RecipeOf(plan, inputs, options.notes), layout_)) {
     summary_.stored_before = static_cast<std::int64_t>(store_->Stored().size());
   }
 
@@ -121,26 +95,60 @@ class Stages {
 
  private:
   bool Ready(const Stage& stage, const std::vector<RunId>& stored) const {
-    return std::all_of(stage.after.begin(), stage.after.end(),
-                       [&](const std::string& name) { return Complete(plan_, stored, name); });
+    return std::all_of(stage.after.begin(), stage.after.end(), [&](const std::string& name) {
+      return ended_early_.contains(name) || Complete(plan_, stored, name);
+    });
   }
 
   void Fly(int stage, const std::vector<RunId>& stored) {
+    if (plan_.stages[static_cast<std::size_t>(stage)].precision)
+      FlyUntilPrecise(stage);
+    else
+      FlyThese(stage, Todo(layout_, stage, options_.shard, stored), stored);
+  }
+
+  void FlyThese(int stage, const std::vector<RunId>& todo, const std::vector<RunId>& stored) {
     ScheduleOptions schedule = options_.schedule;
     schedule.label = plan_.stages[static_cast<std::size_t>(stage)].name;
     schedule.stored_before = StoredOfStage(stored, stage);
     const FlyFn fly = [&](const RunId& id, const std::atomic<bool>& stop) {
-      MissionTask task = TaskOf(plan_, worlds_, networks_.get(), id);
+      MissionTask task = TaskOf(plan_, inputs_, networks_.get(), id);
       task.stop = &stop;
       return FlyMission(task);
     };
-    Add(RunMissions(Todo(layout_, stage, options_.shard, stored), fly, *store_, schedule), summary_.flown);
+    Add(RunMissions(todo, fly, *store_, schedule), summary_.flown);
+  }
+
+  // Rounds of `every` missions for the arms that are not yet known well enough. A run that goes on takes the same
+  // decisions again from what is stored.
+  void FlyUntilPrecise(int stage) {
+    const Stage& plan = plan_.stages[static_cast<std::size_t>(stage)];
+    const Precision& precision = *plan.precision;
+    std::vector<int> open(plan.arms.size());
+    std::iota(open.begin(), open.end(), 0);
+    for (int upto = 0; upto < plan.missions && !open.empty();) {
+      upto = std::min(upto + precision.every, plan.missions);
+      const std::vector<RunId> stored = store_->Stored();
+      std::vector<RunId> todo = Todo(layout_, stage, options_.shard, stored);
+      std::erase_if(todo, [&](const RunId& id) {
+        return id.mission >= upto || std::find(open.begin(), open.end(), id.arm) == open.end();
+      });
+      const std::int64_t failed_before = summary_.flown.failed;
+      FlyThese(stage, todo, stored);
+      store_->Commit();
+      if (summary_.flown.interrupted || summary_.flown.failed > failed_before) return;
+      std::erase_if(open, [&](int arm) {
+        return options_.half_width(options_.dir, stage, arm, upto, precision.metric) <= precision.half_width;
+      });
+    }
+    ended_early_.insert(plan.name);
   }
 
   void Train() {
     store_->Commit();
-    networks_ = TrainNetworks(plan_, {options_.dir, options_.cache_dir, ThreadsFor(options_.schedule.threads),
-                                      options_.schedule.stop});
+    networks_ =
+        TrainNetworks(plan_, {options_.dir, options_.cache_dir, ThreadsFor(options_.schedule.threads),
+                              options_.schedule.stop, options_.schedule.progress, options_.schedule.quiet});
     if (networks_ == nullptr)
       summary_.flown.interrupted = true;
     else
@@ -148,18 +156,24 @@ class Stages {
   }
 
   const SweepPlan& plan_;
-  const Worlds& worlds_;
+  const Inputs& inputs_;
   const SweepOptions& options_;
   const RunLayout layout_;
   const std::unique_ptr<ResultStore> store_;
   std::unique_ptr<NetworkShelf> networks_;
+  std::set<std::string> ended_early_;  // stages whose arms are all known well enough, or flown out
   SweepSummary summary_;
 };
 
 }  // namespace
 
-SweepSummary RunSweep(const SweepPlan& plan, const Worlds& worlds, const SweepOptions& options) {
-  return Stages(plan, worlds, options).Run();
+SweepSummary RunSweep(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options) {
+  for (const Stage& stage : plan.stages)
+    if (stage.precision && options.shard.count > 1)
+      throw UserError(
+          fmt::format("{}: stage {}: a precision needs all missions of an arm; fly it without --shard",
+                      plan.file, stage.name));
+  return Stages(plan, inputs, options).Run();
 }
 
 }  // namespace ed3r

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "engine/core/check.h"
+#include "engine/core/progress.h"
 #include "engine/core/version.h"
 #include "engine/mission/samples.h"
 #include "engine/rfnn/train_all.h"
@@ -27,13 +28,15 @@ std::set<std::string> Foundations(const SweepPlan& plan, const Stage& stage) {
   return found;
 }
 
-// The warm-up arm that an arm of `stage` learns from; (-1, -1) when there is none.
-std::pair<int, int> WarmupOf(const SweepPlan& plan, const Stage& stage, std::string_view source) {
+// The warm-up arm that `learner`, an arm of `stage`, learns from; (-1, -1) when there is none.
+std::pair<int, int> WarmupOf(const SweepPlan& plan, const Stage& stage, const Arm& learner,
+                             std::string_view source) {
   const std::set<std::string> foundations = Foundations(plan, stage);
   for (std::size_t s = 0; s < plan.stages.size(); ++s) {
     if (plan.stages[s].kind != StageKind::kFly || !foundations.contains(plan.stages[s].name)) continue;
     for (std::size_t a = 0; a < plan.stages[s].arms.size(); ++a)
-      if (plan.stages[s].arms[a].config.mission.strategy == source)
+      if (plan.stages[s].arms[a].config.mission.strategy == source &&
+          plan.stages[s].arms[a].variant == learner.variant)
         return {static_cast<int>(s), static_cast<int>(a)};
   }
   return {-1, -1};
@@ -94,7 +97,7 @@ void CheckTraining(const SweepPlan& plan) {
       const bool trained = std::any_of(plan.stages.begin(), plan.stages.end(), [&](const Stage& other) {
         return other.kind == StageKind::kTrain && foundations.contains(other.name);
       });
-      if (!trained || WarmupOf(plan, stage, strategy.networks).first < 0)
+      if (!trained || WarmupOf(plan, stage, arm, strategy.networks).first < 0)
         throw UserError(
             fmt::format("{}: stage {}: arm {} asks networks, so the stage must come after a training stage "
                         "('kind: train') that comes "
@@ -147,7 +150,8 @@ std::size_t TrainingStage::AddJob(const NetworkDesign& design, const DataSet& da
       .seed = static_cast<std::uint64_t>(arm.config.training.seed + seed),
       .code_version = ThisCode().source_hash,
       .notes = {{"warm-up", std::string(source)}, {"eta_min", fmt::format("{}", arm.config.agents.eta_min)}}};
-  std::string name = fmt::format("{} from {}, eta_min {}, seed {}", design.name, source,
+  std::string name = fmt::format("{} from {}{}, eta_min {}, seed {}", design.name, source,
+                                 arm.variant.empty() ? "" : fmt::format(" of {}", arm.variant),
                                  arm.config.agents.eta_min, job.seed);
   for (std::size_t i = 0; i < jobs_.size(); ++i)
     if (names_[i] == name && jobs_[i].data == job.data && TrainingKey(jobs_[i]) == TrainingKey(job)) return i;
@@ -163,7 +167,7 @@ void TrainingStage::Collect() {
       const Arm& arm = stage.arms[a];
       const Strategy& strategy = FindStrategy(arm.config.mission.strategy);
       if (stage.kind != StageKind::kFly || strategy.networks.empty()) continue;
-      const Samples& samples = SamplesFor(WarmupOf(plan_, stage, strategy.networks), arm.config.agents);
+      const Samples& samples = SamplesFor(WarmupOf(plan_, stage, arm, strategy.networks), arm.config.agents);
       ArmNeed need{static_cast<int>(s), static_cast<int>(a), {}, {}};
       for (int seed = 0; seed < arm.config.training.seeds; ++seed) {
         need.rc_jobs.push_back(AddJob(kRcNetwork, samples.rc, arm, strategy.networks, seed));
@@ -181,7 +185,15 @@ std::unique_ptr<NetworkShelf> TrainingStage::Run() {
   train.cache = options_.cache_dir;
   train.threads = options_.threads;
   train.stop = options_.stop;
+  ProgressLine line(options_.progress, options_.quiet);
+  std::size_t done = 0;
+  train.on_done = [&](std::size_t) { ++done; };
+  train.on_epoch = [&](std::size_t job, int epoch, const EpochLoss& loss) {
+    line.Show(fmt::format("training  {}/{} networks  {}: epoch {}, validation loss {:.4f}", done,
+                          jobs_.size(), names_[job], epoch, loss.validation));
+  };
   const std::vector<std::shared_ptr<const Model>> models = TrainAll(jobs_, train);
+  line.Clear();
   if (std::any_of(models.begin(), models.end(), [](const auto& model) { return model == nullptr; }))
     return nullptr;
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <string>
@@ -50,6 +51,8 @@ struct TrainingOptions {
   std::string cache_dir;  // holds networks and checkpoints of all sweeps
   int threads = 1;
   const std::atomic<bool>* stop = nullptr;
+  std::FILE* progress = nullptr;  // where a progress line goes, as in ScheduleOptions
+  bool quiet = false;
 };
 
 // Whether any arm of the plan asks for networks.

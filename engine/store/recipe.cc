@@ -37,14 +37,14 @@ std::optional<std::string> Difference(const Recipe& there, const Recipe& here) {
   if (there.plan_text != here.plan_text) return PlanDifference(there.plan_text, here.plan_text);
   if (there.code_version != here.code_version)
     return fmt::format("the code is {} there and {} here", there.code_version, here.code_version);
-  for (const auto& [world, fingerprint] : there.worlds) {
-    const auto other = here.worlds.find(world);
-    if (other == here.worlds.end()) return fmt::format("the world {} is used there, but not here", world);
+  for (const auto& [name, fingerprint] : there.inputs) {
+    const auto other = here.inputs.find(name);
+    if (other == here.inputs.end()) return fmt::format("{} is used there, but not here", name);
     if (other->second != fingerprint)
-      return fmt::format("the world {} is {} there and {} here", world, fingerprint, other->second);
+      return fmt::format("{} is {} there and {} here", name, fingerprint, other->second);
   }
-  for (const auto& [world, fingerprint] : here.worlds)
-    if (!there.worlds.contains(world)) return fmt::format("the world {} is used here, but not there", world);
+  for (const auto& [name, fingerprint] : here.inputs)
+    if (!there.inputs.contains(name)) return fmt::format("{} is used here, but not there", name);
   return std::nullopt;
 }
 

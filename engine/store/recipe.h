@@ -11,7 +11,7 @@ namespace ed3r {
 struct Recipe {
   std::string plan_text;                      // SweepPlan::CanonicalText()
   std::string code_version;                   // commit, with a dirty flag and source hash
-  std::map<std::string, std::string> worlds;  // world file -> scene fingerprint
+  std::map<std::string, std::string> inputs;  // world files, detectors -> fingerprint
   // What may differ from session to session and changes no result: compiler, CPU, SIMD level, threads,
   // library versions.
   std::map<std::string, std::string> notes;

@@ -70,8 +70,8 @@ void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& l
   put.Run("seed", std::to_string(layout.seed));
   put.Run("plan", recipe.plan_text);
   put.Run("code_version", recipe.code_version);
-  Statement put_world(database, "INSERT INTO worlds VALUES (?, ?)");
-  for (const auto& [file, fingerprint] : recipe.worlds) put_world.Run(file, fingerprint);
+  Statement put_input(database, "INSERT INTO worlds VALUES (?, ?)");
+  for (const auto& [file, fingerprint] : recipe.inputs) put_input.Run(file, fingerprint);
   Statement put_stage(database, "INSERT INTO stages VALUES (?, ?, ?)");
   Statement put_run(database, "INSERT INTO runs VALUES (?, ?, ?, ?, ?)");
   std::int64_t run = 0;
@@ -91,8 +91,8 @@ Recipe ReadRecipe(Connection& database) {
   Recipe recipe;
   recipe.plan_text = database.Text("SELECT value FROM recipe WHERE key = 'plan'");
   recipe.code_version = database.Text("SELECT value FROM recipe WHERE key = 'code_version'");
-  Statement worlds(database, "SELECT file, fingerprint FROM worlds");
-  while (worlds.Step()) recipe.worlds[worlds.Text(0)] = worlds.Text(1);
+  Statement inputs(database, "SELECT file, fingerprint FROM worlds");
+  while (inputs.Step()) recipe.inputs[inputs.Text(0)] = inputs.Text(1);
   return recipe;
 }
 

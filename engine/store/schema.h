@@ -1,7 +1,7 @@
 // The tables of DIR/results.sqlite, and how a file is recognised.
 //
 //   recipe         key, value: sweep, seed, plan, code_version     identity: see recipe.h
-//   worlds         file, fingerprint
+//   worlds         file, fingerprint (of world files and of detectors)
 //   stages, runs   the layout; a run is one arm of one stage
 //   missions       run, mission, every column of MissionRecord
 //   timesteps      run, mission, every column of TimestepRecord (k first)

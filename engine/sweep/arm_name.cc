@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 
 namespace ed3r {
 namespace {
@@ -27,6 +28,24 @@ std::string StrategyName(const Config& config) {
   return fmt::format("ed3r-{:.10g}", 100.0 * config.agents.eta_min);
 }
 
+// What the points set, but for the keys in `told`: "heavy", "cell_m=2".
+void AppendPoints(const std::vector<const AxisPoint*>& points, const std::set<std::string>& axis_keys,
+                  std::initializer_list<std::string_view> told, std::vector<std::string>& parts) {
+  for (const AxisPoint* point : points) {
+    if (!point->name.empty()) {
+      parts.push_back(point->name);
+      continue;
+    }
+    for (const Setting& setting : point->settings) {
+      if (std::find(told.begin(), told.end(), setting.key) != told.end()) continue;
+      const std::string value = setting.key == kWorldKey
+                                    ? std::filesystem::path(setting.canonical).stem().string()
+                                    : setting.canonical;
+      parts.push_back(fmt::format("{}={}", ShortKey(setting.key, axis_keys), value));
+    }
+  }
+}
+
 }  // namespace
 
 std::string ArmName(const Stage& stage, const Config& config, const std::vector<const AxisPoint*>& points,
@@ -46,19 +65,13 @@ std::string ArmName(const Stage& stage, const Config& config, const std::vector<
   } else if (!any_named) {
     parts.push_back(stage.name);
   }
-  for (const AxisPoint* point : points) {
-    if (!point->name.empty()) {
-      parts.push_back(point->name);
-      continue;
-    }
-    for (const Setting& setting : point->settings) {
-      if (setting.key == kStrategyKey || (setting.key == kThresholdKey && threshold_is_told)) continue;
-      const std::string value = setting.key == kWorldKey
-                                    ? std::filesystem::path(setting.canonical).stem().string()
-                                    : setting.canonical;
-      parts.push_back(fmt::format("{}={}", ShortKey(setting.key, axis_keys), value));
-    }
-  }
+  AppendPoints(points, axis_keys, {kStrategyKey, threshold_is_told ? kThresholdKey : kStrategyKey}, parts);
+  return fmt::format("{}", fmt::join(parts, ","));
+}
+
+std::string VariantName(const std::vector<const AxisPoint*>& points, const std::set<std::string>& axis_keys) {
+  std::vector<std::string> parts;
+  AppendPoints(points, axis_keys, {}, parts);
   return fmt::format("{}", fmt::join(parts, ","));
 }
 

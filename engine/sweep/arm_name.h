@@ -22,4 +22,9 @@ namespace ed3r {
 std::string ArmName(const Stage& stage, const Config& config, const std::vector<const AxisPoint*>& points,
                     const std::set<std::string>& axis_keys);
 
+// What the top-level axes of a sweep with stages say at one point of each: as above, but the strategy is told like any
+// other setting. Arms of such a sweep are called ARM@VARIANT.
+//   ed3r-75@hover_form=printed    warmup@heavy
+std::string VariantName(const std::vector<const AxisPoint*>& points, const std::set<std::string>& axis_keys);
+
 }  // namespace ed3r

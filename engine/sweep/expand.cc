@@ -35,11 +35,16 @@ std::string SizeText(std::int64_t size) {
                                                           : std::to_string(size);
 }
 
-// Expands one stage.
+// Expands one stage. The first `variant_axes` of its axes are the study's, the others the stage's own.
 class StageExpander {
  public:
-  StageExpander(Stage& stage, std::string at, std::vector<Axis> axes, std::vector<Condition> where)
-      : stage_(stage), at_(std::move(at)), axes_(std::move(axes)), where_(std::move(where)) {
+  StageExpander(Stage& stage, std::string at, std::vector<Axis> axes, std::size_t variant_axes,
+                std::vector<Condition> where)
+      : stage_(stage),
+        at_(std::move(at)),
+        axes_(std::move(axes)),
+        variant_axes_(static_cast<std::ptrdiff_t>(variant_axes)),
+        where_(std::move(where)) {
     CheckAxesDiffer(axes_);
     for (const Axis& axis : axes_)
       for (const AxisPoint& point : axis.points)
@@ -100,7 +105,11 @@ class StageExpander {
     }
     for (const Condition& condition : where_)
       if (!condition.Holds(arm.config)) return;
-    arm.name = ArmName(stage_, arm.config, points, axis_keys_);
+    arm.name = ArmName(stage_, arm.config, {points.begin() + variant_axes_, points.end()}, axis_keys_);
+    if (variant_axes_ > 0) {
+      arm.variant = VariantName({points.begin(), points.begin() + variant_axes_}, axis_keys_);
+      arm.name = fmt::format("{}@{}", arm.name, arm.variant);
+    }
     if (const std::string problem = CheckParameters(arm.config); !problem.empty())
       FailAt(PlaceOf(problem, points), fmt::format("{} (arm '{}')", problem, arm.name));
     const std::string at = points.empty() ? at_ : points.back()->at;
@@ -129,6 +138,7 @@ class StageExpander {
   Stage& stage_;
   std::string at_;
   std::vector<Axis> axes_;
+  std::ptrdiff_t variant_axes_;
   std::set<std::string> axis_keys_;
   std::vector<Condition> where_;
   std::vector<Setting> fixed_;
@@ -164,9 +174,12 @@ std::vector<Stage> ExpandStages(const SweepSource& source, const std::vector<Set
   std::int64_t all_missions = 0;
   for (const StageSource& from : written) {
     const WrittenCount count = MissionsOf(from, source, missions);
-    stages.push_back({from.name, from.kind, from.after, count.value, {}});
+    stages.push_back({from.name, from.kind, from.after, count.value, {}, {}});
     Stage& stage = stages.back();
-    StageExpander expander(stage, from.at, Concatenated(source.top.axes, from.section.axes),
+    if (stage.kind == StageKind::kFly)
+      stage.precision = from.section.precision ? from.section.precision : source.top.precision;
+    const std::size_t variant_axes = source.stages && source.top.axes ? source.top.axes->size() : 0;
+    StageExpander expander(stage, from.at, Concatenated(source.top.axes, from.section.axes), variant_axes,
                            Concatenated(source.top.where, from.section.where));
     if (expander.Size() > kMaxArms - all_arms)
       FailAt(

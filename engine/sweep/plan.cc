@@ -18,6 +18,9 @@ std::string SweepPlan::CanonicalText() const {
     text += fmt::format("stage={}\nkind={}\nafter={}\nmissions={}\n", stage.name,
                         stage.kind == StageKind::kFly ? "fly" : "train", fmt::join(stage.after, ","),
                         stage.missions);
+    if (stage.precision)
+      text += fmt::format("precision={} {} {}\n", stage.precision->metric, stage.precision->half_width,
+                          stage.precision->every);
     for (const Arm& arm : stage.arms) {
       Config config = arm.config;
       if (!arm.world.empty()) config.mission.world = arm.world;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,9 @@ enum class StageKind { kFly, kTrain };
 struct Arm {
   std::string name;
   Config config;
+  // What the top-level axes of a sweep with stages set: "" without such axes. Every stage is flown once per variant, and
+  // a variant's networks learn from its own warm-up.
+  std::string variant;
   std::vector<std::pair<std::string, std::string>> settings;  // what the axes set, for tables
 
   // config.mission.world as the canonical text has it: relative to the sweep file's folder, or absolute where
@@ -25,11 +29,21 @@ struct Arm {
   std::string world;
 };
 
+// An arm stops early once the 95 % interval of one metric is narrow enough. Looked at after every `every` missions in the
+// order of their numbers, so that the end does not depend on threads or interruptions. Looking often makes the last
+// interval a little too narrow: choose `every` large.
+struct Precision {
+  std::string metric;
+  double half_width = 0.0;  // in the metric's unit
+  int every = 140;          // five missions at each of the 28 places of the default world
+};
+
 struct Stage {
   std::string name;
   StageKind kind = StageKind::kFly;
   std::vector<std::string> after;  // stages that must be finished first; earlier in the plan
-  int missions = 0;                // per arm; 0 for a training stage
+  int missions = 0;                // per arm, at most where `precision` is set; 0 for a training stage
+  std::optional<Precision> precision;
   std::vector<Arm> arms;
 };
 

@@ -13,11 +13,29 @@
 namespace ed3r {
 namespace {
 
-SweepSection ReadSection(const YamlNode& map, const SettingReader& reader) {
+Precision ReadPrecision(const YamlNode& node, const ValueCheck& check) {
+  ExpectKeys(node, "precision", {"metric", "half_width", "every"});
+  const YamlNode* metric = Find(node, "metric");
+  const YamlNode* half_width = Find(node, "half_width");
+  if (metric == nullptr || half_width == nullptr)
+    FailAt(node.at, "precision: needs metric and half_width, e.g. {metric: msr_pct, half_width: 1.5}");
+  Precision precision;
+  precision.metric = TextOf(*metric, "metric");
+  if (const std::string problem = check ? check("precision.metric", precision.metric) : ""; !problem.empty())
+    FailAt(metric->at, problem);
+  precision.half_width = PositiveNumberOf(*half_width, "half_width");
+  if (const YamlNode* every = Find(node, "every"))
+    precision.every = static_cast<int>(WholeNumberOf(*every, "every", 2, kMaxMissions));
+  return precision;
+}
+
+SweepSection ReadSection(const YamlNode& map, const SettingReader& reader, const ValueCheck& check) {
   SweepSection section;
   if (const YamlNode* missions = Find(map, "missions"))
     section.missions = {static_cast<int>(WholeNumberOf(*missions, "missions", 1, kMaxMissions)),
                         missions->at};
+  if (const YamlNode* precision = Find(map, "precision"))
+    section.precision = ReadPrecision(*precision, check);
   if (const YamlNode* set = Find(map, "set")) section.set = reader.ReadMap(*set, "set");
   if (const YamlNode* sweep = Find(map, "sweep")) section.axes = ReadAxes(*sweep, reader);
   if (const YamlNode* where = Find(map, "where")) section.where = ReadConditions(*where, reader);
@@ -46,8 +64,8 @@ void AppendAfter(const YamlNode& node, const std::vector<std::string>& earlier,
 }
 
 StageSource ReadStage(const YamlNode& node, const std::vector<std::string>& earlier,
-                      const SettingReader& reader) {
-  ExpectKeys(node, "a stage", {"name", "kind", "after", "missions", "set", "sweep", "where"});
+                      const SettingReader& reader, const ValueCheck& check) {
+  ExpectKeys(node, "a stage", {"name", "kind", "after", "missions", "precision", "set", "sweep", "where"});
   StageSource stage;
   stage.at = node.at;
   const YamlNode* name = Find(node, "name");
@@ -63,20 +81,23 @@ StageSource ReadStage(const YamlNode& node, const std::vector<std::string>& earl
       AppendAfter(*after, earlier, stage.after);
     }
   }
-  stage.section = ReadSection(node, reader);
+  stage.section = ReadSection(node, reader, check);
   if (stage.kind == StageKind::kTrain && stage.section.missions)
     FailAt(stage.section.missions->at, "missions: is not allowed in a stage of kind train, which flies none");
+  if (stage.kind == StageKind::kTrain && stage.section.precision)
+    FailAt(stage.at, "precision: is not allowed in a stage of kind train, which flies none");
   return stage;
 }
 
-std::vector<StageSource> ReadStages(const YamlNode& node, const SettingReader& reader) {
+std::vector<StageSource> ReadStages(const YamlNode& node, const SettingReader& reader,
+                                    const ValueCheck& check) {
   if (node.kind != YamlNode::Kind::kList || node.items.empty())
     FailAt(node.at, fmt::format("stages: {} is not allowed; allowed: a list of stages",
                                 node.kind == YamlNode::Kind::kList ? "an empty list" : Described(node)));
   std::vector<StageSource> stages;
   std::vector<std::string> names;
   for (const YamlNode& item : node.items) {
-    stages.push_back(ReadStage(item, names, reader));
+    stages.push_back(ReadStage(item, names, reader, check));
     names.push_back(stages.back().name);
   }
   return stages;
@@ -88,6 +109,7 @@ void MergeUnder(SweepSource& source, SweepSource base) {
   if (top.axes) base.top.set = SettingsOffAxes(base.top.set, *top.axes);
   top.set = MergedSettings(base.top.set, top.set);
   if (!top.missions) top.missions = std::move(base.top.missions);
+  if (!top.precision) top.precision = std::move(base.top.precision);
   if (!top.axes) top.axes = std::move(base.top.axes);
   if (!top.where) top.where = std::move(base.top.where);
   if (!source.seed) source.seed = base.seed;
@@ -104,7 +126,7 @@ class SourceReader {
     if (yaml.root.kind == YamlNode::Kind::kNull)
       FailAt(yaml.root.at, "the file is empty; a sweep has at least a name and missions");
     ExpectKeys(yaml.root, "a sweep file",
-               {"name", "base", "missions", "seed", "set", "sweep", "where", "stages"});
+               {"name", "base", "missions", "precision", "seed", "set", "sweep", "where", "stages"});
     const SettingReader reader(FolderOf(file), top_folder_, keep_absolute, check_);
     SweepSource source;
     source.file = file;
@@ -113,8 +135,9 @@ class SourceReader {
     if (const YamlNode* name = Find(yaml.root, "name")) source.name = NameOfThing(*name, "name");
     if (const YamlNode* seed = Find(yaml.root, "seed"))
       source.seed = WholeNumberOf(*seed, "seed", 0, std::numeric_limits<std::uint64_t>::max());
-    source.top = ReadSection(yaml.root, reader);
-    if (const YamlNode* stages = Find(yaml.root, "stages")) source.stages = ReadStages(*stages, reader);
+    source.top = ReadSection(yaml.root, reader, check_);
+    if (const YamlNode* stages = Find(yaml.root, "stages"))
+      source.stages = ReadStages(*stages, reader, check_);
     opened_.push_back(file);
     if (const YamlNode* base = Find(yaml.root, "base"))
       MergeUnder(source, ReadBase(*base, file, keep_absolute));

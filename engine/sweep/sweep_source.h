@@ -1,6 +1,6 @@
 // A sweep file as written, its base files merged underneath, before expansion.
 //
-// Merging: settings of `set` one by one, the nearer file's winning; `missions`, `seed`, `sweep`, `where` and
+// Merging: settings of `set` one by one, the nearer file's winning; `missions`, `precision`, `seed`, `sweep`, `where` and
 // `stages` each as a whole. `name` and the question are the top file's own. An axis replaces a base file's
 // setting of the same key.
 #pragma once
@@ -25,6 +25,7 @@ struct WrittenCount {
 // What the top level of a file and each of its stages have in common.
 struct SweepSection {
   std::optional<WrittenCount> missions;
+  std::optional<Precision> precision;
   std::vector<Setting> set;
   std::optional<std::vector<Axis>> axes;
   std::optional<std::vector<Condition>> where;

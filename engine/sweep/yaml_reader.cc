@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -294,6 +295,15 @@ std::uint64_t WholeNumberOf(const YamlNode& node, std::string_view key, std::uin
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < min || value > max)
     FailAt(node.at, fmt::format("{}: '{}' is not allowed; allowed: {} .. {}", key, text, min, max));
+  return value;
+}
+
+double PositiveNumberOf(const YamlNode& node, std::string_view key) {
+  const std::string& text = TextOf(node, key);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value > 0.0) || !std::isfinite(value))
+    FailAt(node.at, fmt::format("{}: '{}' is not allowed; allowed: a number above 0", key, text));
   return value;
 }
 

@@ -59,6 +59,9 @@ const std::string& TextOf(const YamlNode& node, std::string_view key);
 // A whole number in [min, max].
 std::uint64_t WholeNumberOf(const YamlNode& node, std::string_view key, std::uint64_t min, std::uint64_t max);
 
+// A finite number above 0.
+double PositiveNumberOf(const YamlNode& node, std::string_view key);
+
 // A name that may stand in a path or a table: letters, digits, '.', '_', '-', '+'; starts with a letter or
 // digit; at most 64 characters.
 const std::string& NameOfThing(const YamlNode& node, std::string_view key);

@@ -90,6 +90,24 @@ void SetRay(RTCRay& ray, const Eigen::Vector3d& origin_m, const Eigen::Vector3d&
   ray.flags = 0;
 }
 
+constexpr std::size_t kPacket = 16;
+
+void SetRay(RTCRay16& packet, std::size_t i, const Eigen::Vector3f& origin_m,
+            const Eigen::Vector3f& direction, float range_m) {
+  packet.org_x[i] = origin_m.x();
+  packet.org_y[i] = origin_m.y();
+  packet.org_z[i] = origin_m.z();
+  packet.dir_x[i] = direction.x();
+  packet.dir_y[i] = direction.y();
+  packet.dir_z[i] = direction.z();
+  packet.tnear[i] = 0.0f;
+  packet.tfar[i] = range_m;
+  packet.time[i] = 0.0f;
+  packet.mask[i] = ~0u;
+  packet.id[i] = 0;
+  packet.flags[i] = 0;
+}
+
 }  // namespace
 
 std::string_view RayInstructionSet() {
@@ -165,6 +183,56 @@ bool StaticGeometry::Occluded(const Eigen::Vector3d& from_m, const Eigen::Vector
   SetRay(ray, from_m, path / length_m, kOcclusionMarginM, length_m - kOcclusionMarginM);
   rtcOccluded1(impl_->scene.get(), &context, &ray);
   return ray.tfar < 0.0f;
+}
+
+void StaticGeometry::FirstHits(const Eigen::Vector3d& origin_m, std::span<const Eigen::Vector3f> directions,
+                               double range_m, std::span<SurfaceHit> hits) const {
+  ED3R_CHECK(hits.size() == directions.size(), "one hit per ray");
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCRayHit16 packet;
+  for (std::size_t first = 0; first < directions.size(); first += kPacket) {
+    const std::size_t count = std::min(kPacket, directions.size() - first);
+    alignas(64) int valid[kPacket];
+    for (std::size_t i = 0; i < kPacket; ++i) {
+      valid[i] = i < count ? -1 : 0;
+      SetRay(packet.ray, i, origin_m.cast<float>(), directions[first + std::min(i, count - 1)],
+             static_cast<float>(range_m));
+      packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect16(valid, impl_->scene.get(), &context, &packet);
+    for (std::size_t i = 0; i < count; ++i) {
+      SurfaceHit& hit = hits[first + i];
+      hit = {SurfaceHit::kNone, std::numeric_limits<float>::infinity()};
+      if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+      hit.triangle = packet.hit.primID[i];
+      const double distance_m =
+          impl_->DistanceToTriangle(hit.triangle, origin_m, directions[first + i].cast<double>());
+      hit.distance_m = static_cast<float>(std::clamp(distance_m, 0.0, range_m));
+    }
+  }
+}
+
+void StaticGeometry::HiddenTowards(std::span<const Eigen::Vector3f> points_m,
+                                   const Eigen::Vector3f& direction, double range_m,
+                                   std::span<std::uint8_t> hidden) const {
+  ED3R_CHECK(hidden.size() == points_m.size(), "one answer per point");
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCRay16 packet;
+  for (std::size_t first = 0; first < points_m.size(); first += kPacket) {
+    const std::size_t count = std::min(kPacket, points_m.size() - first);
+    alignas(64) int valid[kPacket];
+    for (std::size_t i = 0; i < kPacket; ++i) {
+      valid[i] = i < count ? -1 : 0;
+      SetRay(packet, i, points_m[first + std::min(i, count - 1)], direction, static_cast<float>(range_m));
+    }
+    rtcOccluded16(valid, impl_->scene.get(), &context, &packet);
+    for (std::size_t i = 0; i < count; ++i) hidden[first + i] = packet.tfar[i] < 0.0f ? 1 : 0;
+  }
 }
 
 btCollisionShape* StaticGeometry::Shape() const { return &impl_->shape; }

@@ -9,7 +9,9 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -25,6 +27,13 @@ struct TriangleMesh {
 // Name of the instruction set that rays use: "avx2" on every x86-64-v3 machine, newer ones included; "sse2"
 // on older ones, where rays that graze an edge may answer differently.
 std::string_view RayInstructionSet();
+
+// What a camera ray met. The triangle is an index into TriangleMesh::triangles.
+struct SurfaceHit {
+  static constexpr unsigned kNone = ~0u;
+  unsigned triangle = kNone;
+  float distance_m = 0.0f;  // +infinity where nothing was met
+};
 
 class StaticGeometry {
  public:
@@ -42,6 +51,15 @@ class StaticGeometry {
 
   // Whether a surface lies between two points (1 cm short of either end).
   bool Occluded(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const;
+
+  // The first surface along each ray of a camera, which all start at one point: triangle and distance along the
+  // unit direction. Fast where 16 neighbours in the list point nearly the same way.
+  void FirstHits(const Eigen::Vector3d& origin_m, std::span<const Eigen::Vector3f> directions, double range_m,
+                 std::span<SurfaceHit> hits) const;
+
+  // Whether a surface lies within range_m of each point along one unit direction: 1 hidden, 0 free.
+  void HiddenTowards(std::span<const Eigen::Vector3f> points_m, const Eigen::Vector3f& direction,
+                     double range_m, std::span<std::uint8_t> hidden) const;
 
   // The static shape for a Bullet world; owned by this object. Bullet does not modify it while stepping.
   btCollisionShape* Shape() const;

@@ -1,4 +1,4 @@
-// bench_kernels [--rounds N] [rc] [robot]
+// bench_kernels [--rounds N] [rc] [robot] [train]
 //
 // Measures the hand-written kernels at the level in use (ED3R_SIMD) against the FMA peak of the core and
 // against other libraries, paired in one run on one core. "ratio" is the time over ours; results are compared
@@ -18,12 +18,15 @@
 #include "kernels/bench/paired.h"
 #include "kernels/bench/peers.h"
 #include "kernels/rfnn.h"
+#include "kernels/train.h"
 
 namespace ed3r::bench {
 namespace {
 
 constexpr double kSampleSeconds = 2e-4;  // shorter than a time slice of a busy machine
-constexpr double kTolerance = 1e-4;      // of the largest value: libraries sum in other orders
+// Training is thousands of steps in a row: with fewer, a sample mostly times the caches that its neighbour emptied.
+constexpr double kTrainingSampleSeconds = 4e-3;
+constexpr double kTolerance = 1e-4;  // of the largest value: libraries sum in other orders
 
 std::vector<float> Normal(std::size_t n, double sigma, std::mt19937* rng) {
   std::normal_distribution<float> draw(0.0f, static_cast<float>(sigma));
@@ -57,6 +60,10 @@ void CheckAgreement(const std::string& name, const std::vector<float>& ours,
   if (difference <= kTolerance * scale) return;
   std::fprintf(stderr, "%s disagrees: difference %g of %g\n", name.c_str(), difference, scale);
   std::exit(1);
+}
+
+void PrintSkipped(const std::vector<std::string>& missing) {
+  for (const std::string& name : missing) std::printf("  %-22s skipped: not found by CMake\n", name.c_str());
 }
 
 // One decision: n candidates, of whose inputs the first n_state are the state.
@@ -115,7 +122,56 @@ void MeasureDecision(const Case& c, int rounds) {
   }
   contenders.push_back(FmaPeak(level));
   PrintTable(c.title, contenders, RunPaired(contenders, rounds, kSampleSeconds));
-  for (const std::string& name : missing) std::printf("  %-22s skipped: not found by CMake\n", name.c_str());
+  PrintSkipped(missing);
+}
+
+// Peers learn without dropout, so that different draws do not hide a different step.
+void CheckTraining(const NamedTrainingPeer& peer, const DenseShape& shape, const std::vector<float>& flat,
+                   TrainOptions options, const std::vector<float>& inputs, const std::vector<float>& targets,
+                   const std::vector<std::uint32_t>& rows) {
+  options.dropout = 0.0;
+  options.learning_rate = 1e-3;  // large enough for the losses to move
+  DenseTrainer ours(shape, flat.data(), options);
+  const std::unique_ptr<TrainingPeer> theirs = peer.make(shape, flat.data(), options);
+  std::vector<float> our_losses, their_losses;
+  const int n = static_cast<int>(rows.size());
+  for (int step = 0; step < 10; ++step) {
+    our_losses.push_back(static_cast<float>(ours.Step(inputs.data(), targets.data(), rows.data(), n)));
+    their_losses.push_back(static_cast<float>(theirs->Step(inputs.data(), targets.data(), rows.data(), n)));
+  }
+  CheckAgreement(peer.name, our_losses, their_losses);
+}
+
+void MeasureTraining(int rounds) {
+  constexpr int kBatch = 128, kSamples = 4096;
+  const int sizes[] = {13, 128, 64, 64, 32, 1};
+  const DenseShape shape = MakeDenseShape(sizes, 6);
+  std::mt19937 rng(2);
+  const std::vector<float> flat = RandomParameters(shape, &rng);
+  const std::vector<float> inputs = Normal(kSamples * 13, 1.0, &rng), targets = Normal(kSamples, 1.0, &rng);
+  std::vector<std::uint32_t> rows(kBatch);
+  for (std::uint32_t& r : rows) r = rng() % kSamples;
+  double flops = 0;  // forward, weight gradient, and input gradient but for the first layer
+  for (int l = 0; l < shape.layers; ++l) flops += 2.0 * kBatch * (l ? 3 : 2) * sizes[l] * sizes[l + 1];
+
+  const TrainOptions options;
+  DenseTrainer ours(shape, flat.data(), options);
+  std::vector<Contender> contenders;
+  contenders.push_back({std::string("hand, ") + SimdLevelName(options.level),
+                        [&] { ours.Step(inputs.data(), targets.data(), rows.data(), kBatch); }, flops});
+  std::vector<std::string> missing;
+  std::vector<std::unique_ptr<TrainingPeer>> peers;
+  for (const NamedTrainingPeer& named : TrainingPeers(&missing)) {
+    CheckTraining(named, shape, flat, options, inputs, targets, rows);
+    peers.push_back(named.make(shape, flat.data(), options));
+    TrainingPeer* peer = peers.back().get();
+    contenders.push_back(
+        {named.name, [&, peer] { peer->Step(inputs.data(), targets.data(), rows.data(), kBatch); }, flops});
+  }
+  contenders.push_back(FmaPeak(options.level));
+  PrintTable("Training step: 13-128-64-64-32-1, batch 128, dropout 0.1, Adam", contenders,
+             RunPaired(contenders, rounds, kTrainingSampleSeconds));
+  PrintSkipped(missing);
 }
 
 int Main(int argc, char** argv) {
@@ -138,6 +194,7 @@ int Main(int argc, char** argv) {
                     rounds);
   if (is_wanted("robot"))
     MeasureDecision({"Robot decision: 11-128-64-32-1, 3 actions", {11, 128, 64, 32, 1}, 9, 3}, rounds);
+  if (is_wanted("train")) MeasureTraining(rounds);
   return 0;
 }
 

@@ -22,6 +22,17 @@ std::vector<NamedInferencePeer> InferencePeers([[maybe_unused]] std::vector<std:
   return peers;
 }
 
+std::vector<NamedTrainingPeer> TrainingPeers([[maybe_unused]] std::vector<std::string>* missing) {
+  std::vector<NamedTrainingPeer> peers = {{"Eigen", MakeEigenTraining},
+                                          {"Eigen, our dropout", MakeEigenTrainingWithOurDraws}};
+#ifdef ED3R_BENCH_TORCH
+  peers.push_back({"libtorch", MakeTorchTraining});
+#else
+  missing->push_back("libtorch");
+#endif
+  return peers;
+}
+
 std::vector<FlatLayer> FlatLayers(const DenseShape& shape, const float* flat) {
   std::vector<FlatLayer> layers;
   for (int l = 0; l < shape.layers; ++l) {

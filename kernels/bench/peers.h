@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kernels/dense_net.h"
+#include "kernels/train.h"
 
 namespace ed3r::bench {
 
@@ -32,6 +33,27 @@ struct NamedInferencePeer {
 
 // Those that this build has; the names of the others go to `missing`.
 std::vector<NamedInferencePeer> InferencePeers(std::vector<std::string>* missing);
+
+// One training step as in kernels/train.h: batch, dropout, Adam.
+class TrainingPeer {
+ public:
+  virtual ~TrainingPeer() = default;
+  // Returns the batch's mean squared error before the update.
+  virtual double Step(const float* inputs, const float* targets, const std::uint32_t* rows, int n) = 0;
+};
+
+using MakeTrainingPeer = std::unique_ptr<TrainingPeer>(const DenseShape& shape, const float* flat,
+                                                       const TrainOptions& options);
+
+MakeTrainingPeer MakeEigenTraining;
+MakeTrainingPeer MakeEigenTrainingWithOurDraws;  // dropout by the hash of kernels/train.h
+MakeTrainingPeer MakeTorchTraining;
+
+struct NamedTrainingPeer {
+  std::string name;
+  MakeTrainingPeer* make;
+};
+std::vector<NamedTrainingPeer> TrainingPeers(std::vector<std::string>* missing);
 
 // Pointers to layer l of the flat form.
 struct FlatLayer {

@@ -101,10 +101,13 @@ std::string Summary(const ClaimStudy& study) {
 std::string Unmeasured(const ClaimStudy& study) {
   std::map<std::string, std::vector<std::string>> by_reason;
   for (const JudgedClaim& judged : study.claims)
-    if (judged.all.verdict == Verdict::kNotMeasured) by_reason[judged.all.why].push_back(judged.claim.id);
+    if (judged.all.verdict == Verdict::kNotMeasured) {
+      const bool absent = judged.all.why.starts_with("not in this run");
+      by_reason[absent ? "arms that are not in this run" : judged.all.why].push_back(judged.claim.id);
+    }
   std::string text;
   for (const auto& [reason, ids] : by_reason)
-    text += Wrap(fmt::format("{} ({})", fmt::join(ids, " "), reason), "Not measured: ", kTerminalWidth);
+    text += Wrap(fmt::format("{}: {}", reason, fmt::join(ids, " ")), "Not measured, ", kTerminalWidth);
   return text;
 }
 

@@ -107,7 +107,7 @@ FoundScene FindScene(ResultReader& reader, const std::string& world) {
   const std::vector<Session> sessions = reader.Sessions();
   if (sessions.empty() || !sessions.back().notes.contains("sweep file"))
     return {nullptr, "no session tells where the sweep file lay"};
-  const auto& worlds = reader.StoredRecipe().worlds;
+  const auto& worlds = reader.StoredRecipe().inputs;
   const auto flown = worlds.find(world);
   if (flown == worlds.end()) return {nullptr, fmt::format("the recipe does not know the world '{}'", world)};
   const std::filesystem::path file =

@@ -33,7 +33,7 @@ std::string MachineText(const Provenance::Session& session) {
 
 std::string WhatWasRun(const Provenance& p) {
   std::string worlds;
-  for (const auto& [file, fingerprint] : p.worlds)
+  for (const auto& [file, fingerprint] : p.inputs)
     worlds +=
         fmt::format("{}{} <small>{}</small>", worlds.empty() ? "" : "<br>", HtmlText(file), fingerprint);
   std::string missions = fmt::format("{} of {} planned", p.stored, p.planned);

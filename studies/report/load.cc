@@ -1,8 +1,12 @@
 #include "studies/report/load.h"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
+#include <sstream>
 
 #include "engine/store/reader.h"
+#include "studies/metrics/metrics.h"
 
 namespace ed3r {
 namespace {
@@ -12,6 +16,36 @@ std::vector<MissionRecord> LoadMissions(ResultReader& reader, int stage, int arm
   reader.ForEachMission(stage, arm, Steps::kSkip,
                         [&](const StoredMission& mission) { missions.push_back(mission.record); });
   return missions;
+}
+
+double HalfWidthOf(ArmData arm, int missions, const std::string& metric) {
+  if (static_cast<int>(arm.missions.size()) < missions) return std::numeric_limits<double>::quiet_NaN();
+  arm.missions.resize(static_cast<std::size_t>(missions));
+  const MetricValue value = ComputeMetrics(arm)[metric];
+  return 0.5 * (value.hi - value.lo);
+}
+
+// The precision of a stage as the canonical text of its plan has it; nothing where an arm flies all its missions.
+std::optional<Precision> PrecisionOf(const std::string& plan_text, const std::string& stage_name) {
+  std::istringstream lines(plan_text);
+  std::string stage;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("stage=")) stage = line.substr(6);
+    if (stage != stage_name || !line.starts_with("precision=")) continue;
+    Precision precision;
+    std::istringstream words(line.substr(10));
+    words >> precision.metric >> precision.half_width >> precision.every;
+    return precision;
+  }
+  return std::nullopt;
+}
+
+// An arm that is known well enough misses nothing.
+bool KnownWellEnough(const ArmData& arm, const std::optional<Precision>& precision) {
+  if (!precision) return false;
+  const auto flown = static_cast<int>(arm.missions.size());
+  return flown > 0 && flown % precision->every == 0 &&
+         HalfWidthOf(arm, flown, precision->metric) <= precision->half_width;
 }
 
 }  // namespace
@@ -24,16 +58,26 @@ RunResults LoadRun(const std::string& dir) {
   for (int s = 0; s < static_cast<int>(layout.stages.size()); ++s) {
     const RunLayout::Stage& stage = layout.stages[s];
     if (stage.missions == 0) continue;
+    const std::optional<Precision> precision = PrecisionOf(reader.StoredRecipe().plan_text, stage.name);
     for (int a = 0; a < static_cast<int>(stage.arms.size()); ++a) {
       ArmData arm{stage.name, stage.arms[a].name, LoadMissions(reader, s, a)};
       const auto flown = static_cast<std::int64_t>(arm.missions.size());
       // Counted from the missions at hand: more may have come in since the status was read.
       arm.failed = static_cast<int>(std::min(status[layout.RunIndex(s, a)].failed, stage.missions - flown));
-      arm.missing = static_cast<int>(stage.missions - flown - arm.failed);
+      if (!KnownWellEnough(arm, precision))
+        arm.missing = static_cast<int>(stage.missions - flown - arm.failed);
       results.arms.push_back(std::move(arm));
     }
   }
   return results;
+}
+
+double HalfWidth(const std::string& dir, int stage, int arm, int missions, const std::string& metric) {
+  ResultReader reader(dir);
+  const RunLayout::Stage& flown = reader.Layout().stages.at(static_cast<std::size_t>(stage));
+  ArmData data{flown.name, flown.arms.at(static_cast<std::size_t>(arm)).name,
+               LoadMissions(reader, stage, arm)};
+  return HalfWidthOf(std::move(data), missions, metric);
 }
 
 }  // namespace ed3r

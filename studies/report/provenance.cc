@@ -33,7 +33,7 @@ Provenance ReadProvenance(const std::string& dir) {
   provenance.sweep = reader.Layout().name;
   provenance.seed = std::to_string(reader.Layout().seed);
   provenance.code_version = reader.StoredRecipe().code_version;
-  provenance.worlds = reader.StoredRecipe().worlds;
+  provenance.inputs = reader.StoredRecipe().inputs;
   for (const Session& session : reader.Sessions())
     provenance.sessions.push_back({session.host, session.begun_utc, session.ended_utc, session.notes});
   if (!provenance.sessions.empty()) {

@@ -17,7 +17,7 @@ struct Provenance {
   std::int64_t planned = 0, stored = 0, failed = 0;
   double simulated_h = 0;                     // flown time of all missions
   double wall_h = 0;                          // spent on them, summed over threads
-  std::map<std::string, std::string> worlds;  // file -> fingerprint
+  std::map<std::string, std::string> inputs;  // file -> fingerprint
   struct Session {
     std::string host, begun_utc, ended_utc;
     std::map<std::string, std::string> notes;  // machine, compiler, libraries

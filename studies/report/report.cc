@@ -1,5 +1,7 @@
 #include "studies/report/report.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "studies/claims/verdict_tables.h"
@@ -23,25 +25,37 @@ void WriteTable(const StudyTable& table, const fs::path& folder) {
 }  // namespace
 
 Report MakeReport(const RunResults& results) {
-  Report report{results.name, {}, {}, {}, JudgeClaims(PaperClaims(), results.arms)};
+  Report report;
+  report.name = results.name;
+  report.variants = CompareVariants(results.arms);
+  const std::vector<ArmData> arms = report.variants.variants.empty()
+                                        ? results.arms
+                                        : ArmsOfVariant(results.arms, report.variants.variants.front());
+  for (const ArmData& arm : results.arms) report.arms.push_back(ComputeMetrics(arm));
   std::vector<ArmMetrics> p85;
-  for (const ArmData& arm : results.arms) {
-    report.arms.push_back(ComputeMetrics(arm));
+  for (const ArmData& arm : arms) {
+    report.told.push_back(ComputeMetrics(arm));
     report.generalisation.push_back(ComputeGeneralisation(arm));
     p85.push_back(ComputeMetrics(P85Group(arm)));
   }
-  report.tables = MakeStudyTables(report.arms, p85);
+  report.claims = JudgeClaims(PaperClaims(), arms);
+  report.convergence = Convergence(arms);
+  report.tables = MakeStudyTables(report.told, p85);
   return report;
 }
 
 std::string ReportText(const Report& report) {
   std::string text = report.name + "\n\n";
   if (report.arms.empty()) return text + "No missions.\n";
-  text += ResultTable(report.arms, PaperClaims());
+  if (!report.variants.variants.empty())
+    text += fmt::format("Variant '{}':\n\n", report.variants.variants.front());
+  text += ResultTable(report.told, PaperClaims());
   const std::string generalisation = GeneralisationTable(report.generalisation);
   if (!generalisation.empty()) text += '\n' + generalisation;
   const std::string verdicts = VerdictText(report.claims);
-  return verdicts.empty() ? text : text + '\n' + verdicts;
+  if (!verdicts.empty()) text += '\n' + verdicts;
+  const std::string variants = VariantText(report.variants);
+  return variants.empty() ? text : text + '\n' + variants;
 }
 
 nlohmann::ordered_json ReportJson(const Report& report) {
@@ -60,6 +74,11 @@ void WriteReport(const Report& report, const std::string& dir) {
   WriteWhole(base / "metrics.csv", ResultCsv(report.arms, PaperClaims()));
   WriteWhole(base / "generalisation.csv", GeneralisationCsv(report.generalisation));
   WriteWhole(base / "verdicts.csv", VerdictCsv(report.claims));
+  WriteWhole(base / "convergence.csv", ConvergenceCsv(report.convergence));
+  if (!report.variants.variants.empty()) {
+    WriteWhole(base / "variants.csv", DifferenceCsv(report.variants));
+    WriteWhole(base / "variant_verdicts.csv", VariantVerdictCsv(report.variants));
+  }
   for (const StudyTable& table : report.tables) WriteTable(table, base / "tables");
 }
 

@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "studies/claims/convergence.h"
 #include "studies/claims/verdicts.h"
 #include "studies/metrics/arm.h"
 #include "studies/metrics/metrics.h"
 #include "studies/tables/result_table.h"
 #include "studies/tables/study_table.h"
+#include "studies/variants/variants.h"
 
 namespace ed3r {
 
@@ -23,9 +25,13 @@ struct RunResults {
 struct Report {
   std::string name;
   std::vector<ArmMetrics> arms;
-  std::vector<Generalisation> generalisation;  // one per arm
+  // What tables and verdicts tell: all arms, or those of the first variant where the study has variants.
+  std::vector<ArmMetrics> told;
+  std::vector<Generalisation> generalisation;  // one per arm told
   std::vector<StudyTable> tables;              // for papers and pages
   ClaimStudy claims;
+  VariantStudy variants;
+  std::vector<ConvergencePoint> convergence;  // of the arms told
 };
 
 Report MakeReport(const RunResults& results);
@@ -36,9 +42,9 @@ std::string ReportText(const Report& report);
 // {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson, "claims": as VerdictJson}.
 nlohmann::ordered_json ReportJson(const Report& report);
 
-// Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv, and tables/ID.md, .tex, .csv and .json of each table
-// into `dir`, which it makes if it has to; each file is replaced whole or left as it was. Throws UserError when it
-// cannot.
+// Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv, convergence.csv, where there are variants
+// variants.csv and variant_verdicts.csv, and tables/ID.md, .tex, .csv and .json of each table into `dir`, which it makes
+// if it has to; each file is replaced whole or left as it was. Throws UserError when it cannot.
 void WriteReport(const Report& report, const std::string& dir);
 
 }  // namespace ed3r

@@ -44,6 +44,18 @@ TEST(ProgressTextTest, LongTimesHaveHours) {
   EXPECT_NE(ProgressText(slow).find("eta 27:45:00"), std::string::npos) << ProgressText(slow);
 }
 
+// A container without /dev/pts cannot make terminals.
+class ProgressLineTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const int outside = posix_openpt(O_RDWR | O_NOCTTY);
+    const bool usable = outside >= 0 && grantpt(outside) == 0 && unlockpt(outside) == 0 &&
+                        access(ptsname(outside), W_OK) == 0;
+    if (outside >= 0) close(outside);
+    if (!usable) GTEST_SKIP() << "no pseudo-terminal on this machine";
+  }
+};
+
 // A terminal of our own to look at from the other side.
 class Terminal {
  public:
@@ -79,7 +91,7 @@ class Terminal {
   std::FILE* inside_;
 };
 
-TEST(ProgressLineTest, WritesOverItselfAtMostFiveTimesASecondAndClears) {
+TEST_F(ProgressLineTest, WritesOverItselfAtMostFiveTimesASecondAndClears) {
   Terminal terminal(120);
   const auto begin = std::chrono::steady_clock::now();
   {
@@ -101,14 +113,14 @@ TEST(ProgressLineTest, WritesOverItselfAtMostFiveTimesASecondAndClears) {
   EXPECT_EQ(output.substr(at), cleared);
 }
 
-TEST(ProgressLineTest, FitsIntoTheTerminal) {
+TEST_F(ProgressLineTest, FitsIntoTheTerminal) {
   Terminal terminal(20);
   ProgressLine line(terminal.inside(), false);
   line.Show(Example());
   EXPECT_EQ(terminal.Output(), fmt::format("\r{}\033[K", ProgressText(Example()).substr(0, 19)));
 }
 
-TEST(ProgressLineTest, IsSilentWhenQuietOrNotATerminal) {
+TEST_F(ProgressLineTest, IsSilentWhenQuietOrNotATerminal) {
   Terminal terminal(80);
   {
     ProgressLine line(terminal.inside(), true);

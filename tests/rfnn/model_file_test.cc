@@ -6,7 +6,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/sha256.h"
-#include "engine/rfnn/sealed_file.h"
+#include "engine/core/sealed_file.h"
 #include "tests/rfnn/toys.h"
 
 namespace ed3r {

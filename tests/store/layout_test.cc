@@ -26,8 +26,9 @@ TEST(LayoutTest, IsTakenFromThePlan) {
   Arm arm;
   arm.name = "rbs";
   arm.config.mission.first_scenario = 17;
-  plan.stages = {{.name = "online", .kind = StageKind::kFly, .after = {}, .missions = 5, .arms = {arm}},
-                 {.name = "train", .kind = StageKind::kTrain, .after = {}, .missions = 0, .arms = {}}};
+  plan.stages = {
+      {.name = "online", .kind = StageKind::kFly, .after = {}, .missions = 5, .precision = {}, .arms = {arm}},
+      {.name = "train", .kind = StageKind::kTrain, .after = {}, .missions = 0, .precision = {}, .arms = {}}};
   const RunLayout layout = LayoutOf(plan);
   EXPECT_EQ(layout.name, "sweep");
   EXPECT_EQ(layout.seed, 99u);

@@ -101,10 +101,10 @@ TEST_F(MergeTest, AnotherRecipeIsRefused) {
   Recipe code = TestRecipe(), plan = TestRecipe(), world = TestRecipe();
   code.code_version = "ffff";
   plan.plan_text += "x";
-  world.worlds.begin()->second = "other";
+  world.inputs.begin()->second = "other";
   refused("code", code, "the code is");
   refused("plan", plan, "the plan differs at its line 5");
-  refused("world", world, "the world worlds/ridges.yaml is");
+  refused("world", world, "worlds/ridges.yaml is");
 }
 
 TEST_F(MergeTest, AMissingDirectoryIsRefused) {

@@ -124,11 +124,11 @@ TEST(StoreTest, AnotherRecipeIsRefusedAndNothingChanges) {
                        "line 5: nothing more there, \"more\" here"));
   EXPECT_TRUE(Contains(error([](Recipe& r, RunLayout&) { r.code_version = "4567"; }),
                        "the code is 0123abcd there and 4567 here"));
-  EXPECT_TRUE(Contains(error([](Recipe& r, RunLayout&) { r.worlds["worlds/ridges.yaml"] = "other"; }),
-                       "the world worlds/ridges.yaml is fingerprint-1 there and other here"));
-  EXPECT_TRUE(Contains(error([](Recipe& r, RunLayout&) { r.worlds.clear(); }), "used there, but not here"));
+  EXPECT_TRUE(Contains(error([](Recipe& r, RunLayout&) { r.inputs["worlds/ridges.yaml"] = "other"; }),
+                       "worlds/ridges.yaml is fingerprint-1 there and other here"));
+  EXPECT_TRUE(Contains(error([](Recipe& r, RunLayout&) { r.inputs.clear(); }), "used there, but not here"));
   EXPECT_TRUE(
-      Contains(error([](Recipe& r, RunLayout&) { r.worlds["b"] = "c"; }), "used here, but not there"));
+      Contains(error([](Recipe& r, RunLayout&) { r.inputs["b"] = "c"; }), "used here, but not there"));
   EXPECT_TRUE(Contains(error([](Recipe&, RunLayout& l) { l.stages[2].missions = 31; }), "other stages"));
   EXPECT_TRUE(Contains(error([](Recipe&, RunLayout& l) { l.seed = 8; }), "other stages, arms or seed"));
   EXPECT_EQ(Bytes(ResultsIn(temp / "run")), bytes);
@@ -151,7 +151,7 @@ TEST(StoreTest, RecipeAndSessionsAreInTheFile) {
   ResultReader reader(temp / "run");
   EXPECT_EQ(reader.StoredRecipe().plan_text, recipe.plan_text);
   EXPECT_EQ(reader.StoredRecipe().code_version, recipe.code_version);
-  EXPECT_EQ(reader.StoredRecipe().worlds, recipe.worlds);
+  EXPECT_EQ(reader.StoredRecipe().inputs, recipe.inputs);
   EXPECT_EQ(reader.Layout().name, "test");
   EXPECT_TRUE(reader.Layout().SameMissions(layout));
   std::vector<Session> sessions = reader.Sessions();

@@ -44,8 +44,19 @@ TEST(StagesTest, TopLevelAxesAndConditionsHoldInEveryStage) {
       "stages:\n"
       "  - {name: a}\n"
       "  - {name: b, sweep: {strategy: [rbs, random]}, where: [strategy == rbs or robot.mass_kg < 3]}\n");
-  EXPECT_EQ(ArmNames(plan.stages[0]), (Names{"rbs,mass_kg=1", "rbs,mass_kg=3"}));
-  EXPECT_EQ(ArmNames(plan.stages[1]), (Names{"rbs,mass_kg=1", "warmup,mass_kg=1", "rbs,mass_kg=3"}));
+  EXPECT_EQ(ArmNames(plan.stages[0]), (Names{"rbs@mass_kg=1", "rbs@mass_kg=3"}));
+  EXPECT_EQ(ArmNames(plan.stages[1]), (Names{"rbs@mass_kg=1", "warmup@mass_kg=1", "rbs@mass_kg=3"}));
+  EXPECT_EQ(plan.stages[1].arms[1].variant, "mass_kg=1");
+  EXPECT_EQ(plan.stages[1].arms[2].variant, "mass_kg=3");
+}
+
+TEST(StagesTest, NamedVariantsNameTheirArms) {
+  const SweepPlan plan = LoadText(
+      "name: x\nmissions: 1\nsweep: {list: [{name: base}, {name: climb, energy.vertical_form: climb}]}\n"
+      "stages:\n  - {name: a}\n  - {name: b, sweep: {strategy: [rbs, ed3r]}}\n");
+  EXPECT_EQ(ArmNames(plan.stages[0]), (Names{"rbs@base", "rbs@climb"}));
+  EXPECT_EQ(ArmNames(plan.stages[1]), (Names{"rbs@base", "ed3r-75@base", "rbs@climb", "ed3r-75@climb"}));
+  EXPECT_EQ(LoadText("name: x\nmissions: 1\nsweep: {robot.mass_kg: [1, 2]}\n").stages[0].arms[0].variant, "");
 }
 
 TEST(StagesTest, ContradictionsAcrossLevelsAreRefused) {

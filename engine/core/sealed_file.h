@@ -68,4 +68,7 @@ void WriteSealedFile(const std::string& path, const SealedFormat& format, std::s
 // version, cut short, longer than it says, or damaged.
 std::string ReadSealedFile(const std::string& path, const SealedFormat& format);
 
+// The same for a sealed file that is in memory already, e.g. compiled into the program; `name` stands in messages.
+std::string OpenSealed(std::string_view bytes, const std::string& name, const SealedFormat& format);
+
 }  // namespace ed3r

@@ -1,4 +1,4 @@
-#include "engine/rfnn/sealed_file.h"
+#include "engine/core/sealed_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -177,19 +177,17 @@ void WriteSealedFile(const std::string& path, const SealedFormat& format, std::s
   SyncDirectoryOf(path);
 }
 
-std::string ReadSealedFile(const std::string& path, const SealedFormat& format) {
-  const std::string bytes = ReadWholeFile(path, format);
-  const auto refuse = [&](const std::string& why) { throw UserError(fmt::format("{}: {}", path, why)); };
-  if (bytes.size() < kMagicBytes || std::string_view(bytes).substr(0, kMagicBytes) != format.magic)
+std::string OpenSealed(std::string_view all, const std::string& name, const SealedFormat& format) {
+  const auto refuse = [&](const std::string& why) { throw UserError(fmt::format("{}: {}", name, why)); };
+  if (all.size() < kMagicBytes || all.substr(0, kMagicBytes) != format.magic)
     refuse(fmt::format("is not a {}", format.what));
-  if (bytes.size() < kHeaderBytes + kDigestBytes)
-    refuse(fmt::format("this {} is damaged: it is cut short at {} bytes", format.what, bytes.size()));
-  const std::string_view all = bytes;
+  if (all.size() < kHeaderBytes + kDigestBytes)
+    refuse(fmt::format("this {} is damaged: it is cut short at {} bytes", format.what, all.size()));
   const auto version = Parse<std::uint32_t>(all.substr(kMagicBytes));
   if (version != format.version)
     refuse(fmt::format("this {} has format version {}; this program reads version {}", format.what, version,
                        format.version));
-  const std::uint64_t size = bytes.size() - kHeaderBytes - kDigestBytes;
+  const std::uint64_t size = all.size() - kHeaderBytes - kDigestBytes;
   const auto told = Parse<std::uint64_t>(all.substr(kMagicBytes + 4));
   if (told != size)
     refuse(fmt::format("this {} is damaged: it has {} bytes of payload and tells of {}", format.what, size,
@@ -197,7 +195,11 @@ std::string ReadSealedFile(const std::string& path, const SealedFormat& format) 
   const std::string_view sealed = all.substr(0, kHeaderBytes + size);
   if (Digest(sealed) != all.substr(sealed.size()))
     refuse(fmt::format("this {} is damaged: its SHA-256 does not match its content", format.what));
-  return bytes.substr(kHeaderBytes, size);
+  return std::string(all.substr(kHeaderBytes, size));
+}
+
+std::string ReadSealedFile(const std::string& path, const SealedFormat& format) {
+  return OpenSealed(ReadWholeFile(path, format), path, format);
 }
 
 }  // namespace ed3r

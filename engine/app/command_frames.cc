@@ -1,0 +1,218 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "engine/app/commands.h"
+#include "engine/app/settings.h"
+#include "engine/core/check.h"
+#include "engine/core/sha256.h"
+#include "engine/core/version.h"
+#include "engine/perception/render/data_set.h"
+#include "engine/perception/render/pictures.h"
+#include "engine/perception/render/renderer.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMaxViews = 1000000;
+constexpr int kEnlarged = 8;
+constexpr PictureSize kLarge{960, 540};
+
+struct Options {
+  std::string out, size;
+  std::vector<std::string> worlds = {"sweeps/worlds/training_a.yaml", "sweeps/worlds/training_b.yaml"};
+  std::vector<std::string> settings;
+  int views = 1000;
+  int frames = 4;
+  int pictures = 8;
+  std::uint64_t seed = 20260101;
+};
+
+PictureSize SizeOf(const Options& options, const Config& config) {
+  if (options.size.empty()) return {config.perception.render.width_px, config.perception.render.height_px};
+  PictureSize size{0, 0};
+  const char* const end = options.size.data() + options.size.size();
+  const auto width = std::from_chars(options.size.data(), end, size.width_px);
+  if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
+    const auto height = std::from_chars(width.ptr + 1, end, size.height_px);
+    if (height.ec == std::errc() && height.ptr == end && size.width_px >= 16 && size.width_px <= 1920 &&
+        size.height_px >= 9 && size.height_px <= 1080)
+      return size;
+  }
+  throw UserError(fmt::format("--size: '{}' is not allowed; allowed: WxH, 16x9 .. 1920x1080", options.size));
+}
+
+void CheckCount(const char* option, int value, int min, int max) {
+  if (value < min || value > max)
+    throw UserError(fmt::format("{}: {} is not allowed; allowed: {} .. {}", option, value, min, max));
+}
+
+std::ofstream Create(const fs::path& path) {
+  std::ofstream file(path, std::ios::binary);
+  if (!file) throw UserError(path.string() + ": cannot be written");
+  return file;
+}
+
+// The frames as one NumPy array (NPY 1.0, uint8, N x H x W x 3, C order), written as they come.
+class FrameFile {
+ public:
+  FrameFile(const fs::path& path, int frames, PictureSize size) : path_(path), file_(Create(path)) {
+    std::string header = fmt::format("{{'descr': '|u1', 'fortran_order': False, 'shape': ({}, {}, {}, 3), }}",
+                                     frames, size.height_px, size.width_px);
+    // Magic, version and length take 10 bytes; the data begin at a multiple of 64.
+    header.append(63 - (header.size() + 10) % 64, ' ');
+    header += '\n';
+    std::string start("\x93NUMPY\x01\x00", 8);
+    start += static_cast<char>(header.size() & 0xff);
+    start += static_cast<char>(header.size() >> 8);
+    Write(start.data(), start.size());
+    Write(header.data(), header.size());
+  }
+  void Append(const FrameStack& stack) { Write(stack.rgb.data(), stack.rgb.size()); }
+  // SHA-256 of the whole file.
+  std::string Close() {
+    file_.close();
+    if (!file_) throw UserError(path_.string() + ": cannot be written; is the disk full?");
+    return hash_.Hex();
+  }
+
+ private:
+  void Write(const void* data, std::size_t bytes) {
+    file_.write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
+    hash_.Update(data, bytes);
+  }
+  fs::path path_;
+  std::ofstream file_;
+  Sha256 hash_;
+};
+
+class DataSet {
+ public:
+  DataSet(const Options& options, const Config& config)
+      : options_(options), config_(config), size_(SizeOf(options, config)) {
+    CheckCount("--views", options.views, 1, kMaxViews);
+    CheckCount("--frames", options.frames, 1, config.sensing.Frames());
+    CheckCount("--pictures", options.pictures, 0, 1000);
+    for (const std::string& file : options.worlds) {
+      worlds_.push_back(Scene::Load(file));
+      if (worlds_.back()->Sites().empty())
+        throw UserError(file + ": a world without fire sites cannot be used here");
+      scenes_.push_back(std::make_shared<TraceScene>(*worlds_.back()));
+    }
+    for (int i = 0; i < options.frames; ++i) numbers_.push_back(i * config.sensing.Frames() / options.frames);
+  }
+
+  void Write() {
+    const fs::path out(options_.out);
+    std::error_code error;
+    fs::create_directories(out, error);
+    if (error) throw UserError(fmt::format("--out: {}: {}", options_.out, error.message()));
+    FrameFile frames(out / "frames.npy", options_.views * options_.frames, size_);
+    std::ofstream labels = Create(out / "labels.csv");
+    labels << "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label,tilt_deg,distractors\n";
+    for (int view = 0; view < options_.views; ++view) WriteView(view, frames, labels);
+    labels.close();
+    if (!labels) throw UserError((out / "labels.csv").string() + ": cannot be written; is the disk full?");
+    WriteManifest(out, frames.Close());
+    fmt::print(
+        "{}: frames.npy ({} views x {} frames, {} x {} px), labels.csv, manifest.json; fire or smoke in {} "
+        "views\n",
+        options_.out, options_.views, options_.frames, size_.width_px, size_.height_px, with_fire_);
+  }
+
+ private:
+  void WriteView(int view, FrameFile& frames, std::ofstream& labels) {
+    const auto number = static_cast<std::uint32_t>(view);
+    const ViewPlan plan = PlanView(scenes_, config_, options_.seed, number);
+    const auto world = static_cast<std::size_t>(plan.world);
+    const Renderer renderer(scenes_[world], plan.site, config_.perception, config_.sensing, options_.seed,
+                            number);
+    const SensingFrames sensed = renderer.Sense(plan.pose, 1, numbers_, size_);
+    frames.Append(sensed.frames);
+    const GroundTruth& truth = sensed.truth;
+    const bool fire = truth.FireInView();
+    with_fire_ += fire ? 1 : 0;
+    const Scene& scene = *worlds_[world];
+    const std::string props = PropsInView(renderer, scene, plan.pose, config_.sensing);
+    for (int i = 0; i < options_.frames; ++i)
+      labels << fmt::format("{},{},{},\"{}\",\"{}\",{:.1f},{},{},{:.3f},{},{:.1f},{}\n",
+                            view * options_.frames + i, view, numbers_[static_cast<std::size_t>(i)],
+                            scene.Name(), scene.Sites()[static_cast<std::size_t>(plan.site)].name,
+                            truth.distance_m, truth.fire_px, truth.smoke_px, truth.occluded, fire ? 1 : 0,
+                            plan.pose.tilt_rad * 180.0 / std::numbers::pi, props);
+    if (view < options_.pictures) WritePictures(view, sensed.frames, renderer, plan.pose);
+  }
+
+  void WritePictures(int view, const FrameStack& frames, const Renderer& renderer, const Pose& pose) const {
+    const std::string stem = (fs::path(options_.out) / fmt::format("view_{:05}", view)).string();
+    WriteFrame(frames, 0, stem + ".png", size_.width_px <= 240 ? kEnlarged : 1);
+    const int first[] = {0};
+    WriteFrame(renderer.Sense(pose, 1, first, kLarge).frames, 0, stem + "_large.png");
+  }
+
+  void WriteManifest(const fs::path& out, const std::string& sha256) const {
+    nlohmann::ordered_json manifest;
+    manifest["seed"] = options_.seed;
+    manifest["views"] = options_.views;
+    manifest["frames_per_view"] = options_.frames;
+    manifest["frame_numbers"] = numbers_;
+    manifest["width_px"] = size_.width_px;
+    manifest["height_px"] = size_.height_px;
+    manifest["views_with_fire"] = with_fire_;
+    manifest["views_without_fire"] = options_.views - with_fire_;
+    for (const auto& world : worlds_)
+      manifest["worlds"].push_back({{"name", world->Name()}, {"fingerprint", world->Fingerprint()}});
+    manifest["settings"] = options_.settings;
+    const CodeVersion code = ThisCode();
+    manifest["code"] = {{"source_hash", code.source_hash}, {"commit", code.commit}, {"dirty", code.dirty}};
+    manifest["frames_npy_sha256"] = sha256;
+    Create(out / "manifest.json") << manifest.dump(2) << "\n";
+  }
+
+  const Options& options_;
+  const Config& config_;
+  PictureSize size_;
+  std::vector<std::shared_ptr<const Scene>> worlds_;
+  std::vector<std::shared_ptr<const TraceScene>> scenes_;
+  std::vector<int> numbers_;
+  int with_fire_ = 0;
+};
+
+int WriteFrames(const Options& options) {
+  Config config;
+  ApplySettings(options.settings, Scope::kMission, config);
+  DataSet(options, config).Write();
+  return kDone;
+}
+
+}  // namespace
+
+Command AddFrames(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* parser = program.add_subcommand("frames", "Renders a labelled data set for training detectors");
+  parser->add_option("--out", options->out, "Folder for frames.npy, labels.csv, manifest.json and pictures")
+      ->required();
+  parser
+      ->add_option("--world", options->worlds,
+                   "World file (YAML), repeatable; default: the two training worlds")
+      ->allow_extra_args(false);
+  parser->add_option("--views", options->views,
+                     "Views, half of them with fire or smoke in sight; default 1000");
+  parser->add_option("--frames", options->frames,
+                     "Frames of each view, spread over its sensing period; default 4");
+  parser->add_option("--seed", options->seed, "Seed of poses, weather and flicker; default 20260101");
+  parser->add_option("--pictures", options->pictures, "Views of which PNG files are written too; default 8");
+  parser->add_option("--size", options->size, "WxH in pixels in place of perception.render's");
+  parser->add_option("--set", options->settings, "KEY=VALUE; e.g. perception.render.noise=4")
+      ->allow_extra_args(false);
+  return {parser, [options] { return WriteFrames(*options); }};
+}
+
+}  // namespace ed3r

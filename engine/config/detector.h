@@ -1,0 +1,91 @@
+// Which networks look at rendered frames: the built-in ones, or the user's own ONNX models.
+//
+// A user's model gets one frame at a time, 1 x 3 x input_height_px x input_width_px, shrunk or stretched to that size:
+//   x = scale (byte - mean)          byte in 0 .. 255, channels in channel_order
+// and answers with a vector, of which output_index is the logit or the probability of "fire or smoke in view".
+#pragma once
+
+#include <string>
+
+#include "engine/config/field.h"
+
+namespace ed3r {
+
+enum class ChannelOrder { kRgb, kBgr };
+template <>
+struct EnumNames<ChannelOrder> {
+  static constexpr EnumName<ChannelOrder> kNames[] = {{ChannelOrder::kRgb, "rgb"},
+                                                      {ChannelOrder::kBgr, "bgr"}};
+};
+
+enum class DetectorOutput { kProbability, kSigmoid, kSoftmax };
+template <>
+struct EnumNames<DetectorOutput> {
+  static constexpr EnumName<DetectorOutput> kNames[] = {{DetectorOutput::kProbability, "probability"},
+                                                        {DetectorOutput::kSigmoid, "sigmoid"},
+                                                        {DetectorOutput::kSoftmax, "softmax"}};
+};
+
+struct DetectorConfig {
+  std::string full = "builtin";
+  std::string quantized = "builtin";
+  int input_width_px = 96;
+  int input_height_px = 54;
+  ChannelOrder channel_order = ChannelOrder::kRgb;
+  double scale = 1.0 / 255.0;
+  double mean_red = 0.0;
+  double mean_green = 0.0;
+  double mean_blue = 0.0;
+  int output_index = 0;
+  DetectorOutput output = DetectorOutput::kProbability;
+
+  template <class Self, class Visitor>
+  static void Describe(Self& self, Visitor&& visit) {
+    constexpr std::string_view kSource = "none in the paper";
+    constexpr std::string_view kModel = "Table of CV models";
+    visit("full", self.full,
+          {.source = kModel, .meaning = "Full network: builtin, or the path of an ONNX model"});
+    visit("quantized", self.quantized,
+          {.source = kModel, .meaning = "Quantized network: builtin, or the path of an ONNX model"});
+    visit("input_width_px", self.input_width_px,
+          {.unit = "px",
+           .min = 8,
+           .max = 2048,
+           .source = kSource,
+           .meaning = "input width of the ONNX models"});
+    visit("input_height_px", self.input_height_px,
+          {.unit = "px",
+           .min = 8,
+           .max = 2048,
+           .source = kSource,
+           .meaning = "input height of the ONNX models"});
+    visit("channel_order", self.channel_order,
+          {.source = kSource, .meaning = "order of the colour channels that the ONNX models want"});
+    visit("scale", self.scale,
+          {.min = 1e-6,
+           .max = 1e3,
+           .source = kSource,
+           .meaning = "factor on (byte - mean) for the ONNX models"});
+    DescribeMeans(self, visit);
+    visit("output_index", self.output_index,
+          {.min = 0, .max = 1e6, .source = kSource, .meaning = "which output of the ONNX models means fire"});
+    visit("output", self.output,
+          {.source = kSource,
+           .meaning = "what the ONNX models put out: probabilities, or logits to turn into them"});
+  }
+
+ private:
+  template <class Self, class Visitor>
+  static void DescribeMeans(Self& self, Visitor& visit) {
+    constexpr FieldInfo kInfo{
+        .min = 0,
+        .max = 255,
+        .source = "none in the paper",
+        .meaning = "taken off this channel's bytes before scaling, for the ONNX models"};
+    visit("mean_red", self.mean_red, kInfo);
+    visit("mean_green", self.mean_green, kInfo);
+    visit("mean_blue", self.mean_blue, kInfo);
+  }
+};
+
+}  // namespace ed3r

@@ -1,0 +1,39 @@
+#include "engine/perception/detector.h"
+#include "engine/perception/sensor.h"
+#include "engine/perception/view.h"
+
+namespace ed3r {
+namespace {
+
+class ProfileSensor : public Sensor {
+ public:
+  ProfileSensor(const Scene& scene, const Config& config, const SensorScenario& scenario)
+      : config_(config),
+        scenario_(scenario),
+        fire_(scene, scenario.site),
+        distractors_(DrawDistractors(scene, config.perception, scenario.seed, scenario.number)) {}
+
+  Detection Sense(const Pose& pose, DetectionModel model, std::uint32_t timestep) const override {
+    const View view = fire_.Look(pose, config_.sensing, config_.perception, distractors_);
+    return {.score = DetectFromProfile(view, config_.perception, model, config_.sensing.Frames(),
+                                       scenario_.seed, scenario_.number, timestep),
+            .fire_share = view.fire_share,
+            .smoke_share = view.smoke_share,
+            .fire_in_view = view.fire_in_view};
+  }
+
+ private:
+  const Config& config_;
+  const SensorScenario scenario_;
+  const FireView fire_;
+  const std::vector<Distractor> distractors_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> MakeProfileSensor(const Scene& scene, const Config& config,
+                                          const SensorScenario& scenario) {
+  return std::make_unique<ProfileSensor>(scene, config, scenario);
+}
+
+}  // namespace ed3r

@@ -1,0 +1,105 @@
+// Measures where the time of one sensing period goes, over views of the kind that detectors are trained on.
+//
+//   render_bench WORLD.yaml [VIEWS [WxH]]     default: 200 views, 96x54
+//
+// For each part: milliseconds of CPU time per sensing period of 33 frames, median and mean over the views, one thread.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <exception>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "engine/perception/render/data_set.h"
+#include "engine/perception/render/plume.h"
+#include "engine/perception/render/renderer.h"
+#include "engine/perception/render/shade.h"
+
+namespace ed3r {
+namespace {
+
+constexpr std::uint64_t kSeed = 7;
+
+double ThreadMs() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+struct Part {
+  const char* name;
+  std::vector<double> ms;
+};
+
+// The least of three runs: what the work takes when nothing else disturbs it.
+template <class Call>
+void Measure(Part& part, Call call) {
+  double least = 1e300;
+  for (int run = 0; run < 3; ++run) {
+    const double start = ThreadMs();
+    call();
+    least = std::min(least, ThreadMs() - start);
+  }
+  part.ms.push_back(least);
+}
+
+void Run(const std::string& world, int views, PictureSize size) {
+  const std::shared_ptr<const Scene> scene = Scene::Load(world);
+  const std::vector<std::shared_ptr<const TraceScene>> scenes = {std::make_shared<TraceScene>(*scene)};
+  const Config config;
+  const PixelGrid grid{size.width_px, size.height_px, 2};
+  std::vector<PlumePhase> phases(33);
+  for (std::size_t i = 0; i < phases.size(); ++i) phases[i].time_s = static_cast<double>(i) / 11.0;
+  std::vector<int> numbers(33);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  std::array<Part, 4> parts = {
+      {{"trace", {}}, {"shade", {}}, {"fire and smoke, 33 frames", {}}, {"all, 33 frames", {}}}};
+  for (int view = 0; view < views; ++view) {
+    const auto number = static_cast<std::uint32_t>(view);
+    const ViewPlan plan = PlanView(scenes, config, kSeed, number);
+    const Renderer renderer(scenes[0], plan.site, config.perception, config.sensing, kSeed, number);
+    const FireSite& site = scene->Sites()[static_cast<std::size_t>(plan.site)];
+    SensingTrace trace;
+    StillPicture still;
+    Measure(parts[0], [&] {
+      trace = scenes[0]->Trace(plan.pose, config.sensing, grid, renderer.Weather(), renderer.Props());
+    });
+    Measure(parts[1], [&] { still = Shade(trace, *scene, renderer.Weather(), renderer.Props(), &site); });
+    Measure(parts[2], [&] { TracePlume(trace, site, scene->Fire(), renderer.Weather(), still.fog, phases); });
+    Measure(parts[3], [&] { renderer.Sense(plan.pose, 1, numbers, size); });
+  }
+  fmt::print("{}, {} views, {} x {} px, rays in {}\n", scene->Name(), views, size.width_px, size.height_px,
+             RayInstructionSet());
+  for (Part& part : parts) {
+    std::sort(part.ms.begin(), part.ms.end());
+    const double mean =
+        std::accumulate(part.ms.begin(), part.ms.end(), 0.0) / static_cast<double>(part.ms.size());
+    fmt::print("{:<28} median {:7.3f} ms   mean {:7.3f} ms   largest {:7.3f} ms\n", part.name,
+               part.ms[part.ms.size() / 2], mean, part.ms.back());
+  }
+}
+
+}  // namespace
+}  // namespace ed3r
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    fmt::print(stderr, "usage: render_bench WORLD.yaml [VIEWS [WxH]]\n");
+    return 2;
+  }
+  ed3r::PictureSize size;
+  if (argc > 3 && std::sscanf(argv[3], "%dx%d", &size.width_px, &size.height_px) != 2) return 2;
+  try {
+    ed3r::Run(argv[1], argc > 2 ? std::max(1, std::atoi(argv[2])) : 200, size);
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "render_bench: {}\n", error.what());
+    return 1;
+  }
+}

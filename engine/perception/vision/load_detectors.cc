@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "engine/core/check.h"
+#include "engine/core/sha256.h"
+#include "engine/perception/vision/builtin_detector.h"
+#include "engine/perception/vision/frame_detector.h"
+#include "engine/perception/vision/model_file.h"
+#include "engine/perception/vision/onnx_detector.h"
+
+namespace ed3r {
+namespace {
+
+constexpr std::string_view kBuiltin = "builtin";
+
+std::string ReadBytes(const std::string& key, const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes;
+  if (file) bytes.assign(std::istreambuf_iterator<char>(file), {});
+  if (!file || file.bad())
+    throw UserError(
+        fmt::format("{}: {}: cannot be read: {}; 'builtin' or the path of an ONNX model is allowed", key,
+                    path, std::strerror(errno)));
+  return bytes;
+}
+
+// Built-in networks also come from a file of scripts/train_detector.py, which starts with its magic bytes.
+std::shared_ptr<const FrameDetector> Load(const std::string& key, const std::string& name,
+                                          Arithmetic arithmetic, const DetectorConfig& config,
+                                          Sha256& fingerprint) {
+  const bool builtin = name == kBuiltin;
+  const std::string bytes = builtin ? std::string(BuiltinDetectorBytes()) : ReadBytes(key, name);
+  fingerprint.Update(fmt::format("{} {}\n", key, bytes.size()));
+  fingerprint.Update(bytes);
+  const bool ours = builtin || bytes.starts_with("ED3RCNN\n");
+  if (!ours) return MakeOnnxDetector(key, name, bytes, config);
+  auto model =
+      std::make_shared<const DetectorModel>(ParseDetectorModel(bytes, fmt::format("{}: {}", key, name)));
+  if (arithmetic == Arithmetic::kInteger && model->quantization.empty())
+    throw UserError(fmt::format("{}: {}: this detector network has no integer scales", key, name));
+  std::shared_ptr<const FrameDetector> detector = MakeNetworkDetector(model, arithmetic);
+  const std::size_t frame_bytes = static_cast<std::size_t>(Layers(model->topology).front().Inputs());
+  const FrameStack blank{.frames = 1,
+                         .width_px = model->topology.width_px,
+                         .height_px = model->topology.height_px,
+                         .rgb = std::vector<std::uint8_t>(frame_bytes, 128)};
+  double confidence = 0.0;
+  detector->Confidences(blank, std::span(&confidence, 1));
+  return detector;
+}
+
+}  // namespace
+
+FrameDetector::~FrameDetector() = default;
+
+DetectorPair LoadDetectors(const DetectorConfig& config) {
+  Sha256 fingerprint;
+  DetectorPair pair;
+  pair.full = Load("perception.detector.full", config.full, Arithmetic::kFloat, config, fingerprint);
+  pair.quantized =
+      Load("perception.detector.quantized", config.quantized, Arithmetic::kInteger, config, fingerprint);
+  fingerprint.Update(fmt::format("{} {} {} {} {} {} {} {} {}", config.input_width_px, config.input_height_px,
+                                 NameOf(config.channel_order), config.scale, config.mean_red,
+                                 config.mean_green, config.mean_blue, config.output_index,
+                                 NameOf(config.output)));
+  pair.fingerprint = fingerprint.Hex();
+  return pair;
+}
+
+}  // namespace ed3r

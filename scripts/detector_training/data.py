@@ -1,0 +1,131 @@
+"""Data sets: pictures as bytes, with labels, in one shape whatever they were read from."""
+import csv
+import dataclasses
+import hashlib
+import pathlib
+
+import numpy as np
+
+WIDTH, HEIGHT = 96, 54
+
+# A frame is positive when the renderer's ground truth says so: one visible pixel of fire or smoke. Frames with fewer
+# than these are left out of training, where a pixel or two teaches noise, never out of an evaluation.
+FEW_FIRE_PX, FEW_SMOKE_PX = 2, 8
+
+
+class DataError(Exception):
+    """Bad input: one line that says what and where."""
+
+
+@dataclasses.dataclass
+class DataSet:
+    """frames: n x 54 x 96 x 3 bytes; positive: what an evaluation asks for; usable: clear enough to learn from."""
+
+    name: str
+    frames: np.ndarray
+    positive: np.ndarray
+    usable: np.ndarray
+    view: np.ndarray  # frames of one view stay together when a set is divided
+    columns: dict[str, np.ndarray]
+    sha256: str
+
+    def select(self, mask: np.ndarray) -> "DataSet":
+        return DataSet(self.name, self.frames[mask], self.positive[mask], self.usable[mask], self.view[mask],
+                       {key: values[mask] for key, values in self.columns.items()}, self.sha256)
+
+    def __len__(self) -> int:
+        return len(self.positive)
+
+
+def sha256_of(*paths: pathlib.Path) -> str:
+    digest = hashlib.sha256()
+    for path in paths:
+        with open(path, "rb") as file:
+            while block := file.read(1 << 20):
+                digest.update(block)
+    return digest.hexdigest()
+
+
+def read_rendered(folder: pathlib.Path) -> DataSet:
+    """A folder of `ed3r frames`."""
+    for name in ("frames.npy", "labels.csv"):
+        if not (folder / name).is_file():
+            raise DataError(f"{folder}: holds no {name}; a folder written by 'ed3r frames' is wanted")
+    frames = np.load(folder / "frames.npy", mmap_mode="r")
+    if frames.dtype != np.uint8 or frames.shape[1:] != (HEIGHT, WIDTH, 3):
+        raise DataError(f"{folder}/frames.npy: {frames.dtype} {frames.shape}; "
+                        f"uint8 (n, {HEIGHT}, {WIDTH}, 3) is wanted")
+    with open(folder / "labels.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    if len(rows) != len(frames):
+        raise DataError(f"{folder}/labels.csv: {len(rows)} rows for {len(frames)} frames")
+    for column in ("view", "world", "distance_m", "fire_px", "smoke_px", "occluded", "label"):
+        if rows and column not in rows[0]:
+            raise DataError(f"{folder}/labels.csv: has no column {column}")
+    number = {key: np.array([float(row[key]) for row in rows]) for key in ("distance_m", "fire_px", "smoke_px",
+                                                                         "occluded", "label")}
+    positive = number["label"] > 0
+    clear = (number["fire_px"] >= FEW_FIRE_PX) | (number["smoke_px"] >= FEW_SMOKE_PX)
+    world = np.array([row["world"] for row in rows])
+    view = np.array([f"{row['world']}/{row['view']}" for row in rows])
+    return DataSet(str(folder), frames, positive, clear == positive, view, {**number, "world": world},
+                   sha256_of(folder / "frames.npy", folder / "labels.csv"))
+
+
+def read_dfire(folder: pathlib.Path) -> DataSet:
+    """D-Fire's layout: images/*.jpg|png and labels/*.txt with 'class x y width height' lines; 0 smoke, 1 fire.
+
+    A picture with any box is positive; an empty or missing label file means none. Pictures are shrunk to the networks'
+    size, proportions not kept, as the engine does with foreign pictures.
+    """
+    from PIL import Image
+
+    pictures = sorted(p for p in (folder / "images").glob("*") if p.suffix.lower() in {".jpg", ".jpeg", ".png"})
+    if not pictures:
+        raise DataError(f"{folder}: holds no pictures in images/; D-Fire's layout is images/ and labels/")
+    frames, smoke, fire, files = [], [], [], []
+    for picture in pictures:
+        try:
+            with Image.open(picture) as image:
+                frames.append(np.asarray(image.convert("RGB").resize((WIDTH, HEIGHT), Image.Resampling.BOX)))
+        except OSError as error:
+            raise DataError(f"{picture}: is no picture: {error}") from error
+        label = folder / "labels" / (picture.stem + ".txt")
+        classes = _classes(label) if label.is_file() else set()
+        smoke.append(0 in classes)
+        fire.append(1 in classes)
+        files += [picture] + ([label] if label.is_file() else [])
+    positive = np.array(smoke) | np.array(fire)
+    unknown = np.full(len(frames), np.nan)
+    columns = {"distance_m": unknown, "occluded": unknown, "smoke": np.array(smoke), "fire": np.array(fire),
+               "world": np.array(["dfire"] * len(frames))}
+    return DataSet(str(folder), np.stack(frames), positive, np.ones(len(frames), bool),
+                   np.array([p.stem for p in pictures]), columns, sha256_of(*files))
+
+
+def _classes(label: pathlib.Path) -> set[int]:
+    found = set()
+    for number, line in enumerate(label.read_text(encoding="utf-8").splitlines(), 1):
+        if not line.strip():
+            continue
+        words = line.split()
+        try:
+            kind, box = int(words[0]), [float(word) for word in words[1:]]
+        except ValueError:
+            kind, box = -1, []
+        if kind not in (0, 1) or len(box) != 4:
+            raise DataError(f"{label}:{number}: '{line.strip()}'; 'class x y width height' with class 0 (smoke) or "
+                            "1 (fire) is wanted")
+        found.add(kind)
+    return found
+
+
+def divide(data: DataSet, share: float, seed: int) -> tuple[DataSet, DataSet]:
+    """(rest, share): whole views, drawn by a hash of seed and view, so that no view is on both sides."""
+
+    def drawn(view: str) -> bool:
+        return int(hashlib.sha256(f"{seed} {view}".encode()).hexdigest()[:8], 16) < share * 2**32
+
+    chosen = {view: drawn(view) for view in np.unique(data.view)}
+    mask = np.array([chosen[view] for view in data.view])
+    return data.select(~mask), data.select(mask)

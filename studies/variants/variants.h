@@ -1,0 +1,58 @@
+// What the variants of a study change, compared with its first one: for sensitivity studies (one reading of the paper at
+// a time) and for the same missions flown twice (two perception tiers).
+//
+// Arms of a variant are called ARM@VARIANT (engine/sweep/plan.h). The same arm of two variants meets the same scenarios,
+// so differences are paired by scenario. Pure functions, any thread.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "studies/claims/verdicts.h"
+#include "studies/metrics/arm.h"
+
+namespace ed3r {
+
+// One metric of one arm in a variant minus the same in the first variant: mean over scenarios that both flew, with a 95 %
+// interval (Student's t; where several networks flew, at least as wide as t over the networks' own differences).
+struct VariantDifference {
+  std::string arm, variant, metric;
+  double base = 0.0;  // the metric's mean in the first variant, over the pairs
+  double difference = 0.0, lo = 0.0, hi = 0.0;
+  int pairs = 0;
+};
+
+// A claim of the paper that is judged otherwise than in the first variant.
+struct VerdictChange {
+  std::string claim, variant;
+  Verdict base, here;
+};
+
+struct VariantStudy {
+  std::vector<std::string>
+      variants;  // as flown, the first is what the others are compared with; empty: no variants
+  std::vector<VariantDifference> differences;
+  std::vector<ClaimStudy> verdicts;  // one per variant
+  std::vector<VerdictChange> changes;
+};
+
+// Names of the variants among the arms, in their order; empty where no arm has one.
+std::vector<std::string> VariantsOf(std::span<const ArmData> arms);
+
+// The arms of one variant, under their own names.
+std::vector<ArmData> ArmsOfVariant(std::span<const ArmData> arms, const std::string& variant);
+
+// Nothing is compared, and `variants` is empty, where the arms have no variants.
+VariantStudy CompareVariants(std::span<const ArmData> arms);
+
+// Two tables, differences and changed verdicts, in lines of at most kTerminalWidth characters; empty without variants.
+std::string VariantText(const VariantStudy& study);
+
+// Columns arm,variant,metric,base,difference,lo,hi,pairs.
+std::string DifferenceCsv(const VariantStudy& study);
+
+// Columns claim,VARIANT...: the verdict of every claim in every variant.
+std::string VariantVerdictCsv(const VariantStudy& study);
+
+}  // namespace ed3r

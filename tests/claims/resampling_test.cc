@@ -1,0 +1,124 @@
+#include "studies/statistics/resampling.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+TEST(ResamplerTest, MissionsStayWithinTheirNetworks) {
+  const Resampler resampler({0, 1, 1, 0, 2, 1}, 3);
+  std::vector<int> counts;
+  std::vector<int> seen(6, 0);
+  for (int b = 0; b < 200; ++b) {
+    resampler.DrawMissions(b, counts);
+    ASSERT_EQ(counts.size(), 6u);
+    EXPECT_EQ(counts[0] + counts[3], 2);
+    EXPECT_EQ(counts[1] + counts[2] + counts[5], 3);
+    EXPECT_EQ(counts[4], 1);
+    for (std::size_t i = 0; i < 6; ++i) seen[i] += counts[i];
+  }
+  for (const int count : seen)
+    EXPECT_NEAR(count, 200, 45);  // three standard deviations of 200 draws in three
+}
+
+TEST(ResamplerTest, NetworksAreDrawnWithReplacement) {
+  const Resampler resampler({0, 1, 2, 3, 4}, 5);
+  std::vector<int> counts;
+  int repeated = 0;
+  for (int b = 0; b < 200; ++b) {
+    resampler.DrawNetworks(b, counts);
+    EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0), 5);
+    for (const int count : counts) repeated += count > 1 ? 1 : 0;
+  }
+  EXPECT_GT(repeated, 100);
+}
+
+TEST(ResamplerTest, SameNumberSameDraws) {
+  const Resampler one({0, 0, 0, 1, 1, 1, 1}, 2), two({0, 0, 0, 1, 1, 1, 1}, 2);
+  std::vector<int> a, b, c;
+  one.DrawMissions(7, a), two.DrawMissions(8, b), two.DrawMissions(7, c);
+  EXPECT_EQ(a, c);
+  EXPECT_NE(a, b);
+}
+
+TEST(ResamplerTest, UnitsBelongToAGroup) {
+  EXPECT_THROW(Resampler({0, 2}, 2), InternalError);
+  EXPECT_THROW(Resampler({-1}, 2), InternalError);
+}
+
+// 0, 1, ..., 1000 around its middle.
+std::vector<double> Ramp(double width) {
+  std::vector<double> values;
+  for (int i = 0; i <= 1000; ++i) values.push_back(10 + width * (i / 1000.0 - 0.5));
+  return values;
+}
+
+TEST(UncertaintyTest, OverMissionsItIsThePercentiles) {
+  const Resampled number{10, Ramp(4), {}, 1};
+  const Uncertainty u = UncertaintyOf(number);
+  EXPECT_NEAR(u.lo, 8.1, 1e-9);
+  EXPECT_NEAR(u.hi, 11.9, 1e-9);
+  EXPECT_NEAR(u.sd_missions, 4 / std::sqrt(12.0), 0.01);
+  EXPECT_TRUE(std::isnan(u.sd_networks));
+}
+
+// Three networks: sd of the resamples 1 (two points, half each), x sqrt(3/2), x t of 2 degrees 4.303.
+TEST(UncertaintyTest, OverNetworksItIsStudents) {
+  std::vector<double> networks;
+  for (int i = 0; i < 5000; ++i) networks.push_back(i % 2 == 0 ? 9 : 11);
+  const Uncertainty u = UncertaintyOf({10, Ramp(0.4), networks, 3});
+  EXPECT_NEAR(u.sd_networks, std::sqrt(1.5), 1e-3);
+  EXPECT_NEAR(u.hi - 10, 4.30265 * std::sqrt(1.5), 1e-3);
+  EXPECT_NEAR(10 - u.lo, 4.30265 * std::sqrt(1.5), 1e-3);
+}
+
+TEST(UncertaintyTest, NetworksThatAgreeByAccidentNarrowNothing) {
+  const Uncertainty u = UncertaintyOf({10, Ramp(4), std::vector<double>(1000, 10.0), 5});
+  EXPECT_NEAR(u.lo, 8.1, 1e-9);
+  EXPECT_NEAR(u.hi, 11.9, 1e-9);
+}
+
+TEST(UncertaintyTest, MissingResamplesGiveNone) {
+  std::vector<double> most_missing(1000, std::nan(""));
+  for (int i = 0; i < 400; ++i) most_missing[static_cast<std::size_t>(i)] = i;
+  EXPECT_TRUE(std::isnan(UncertaintyOf({10, most_missing, {}, 1}).lo));
+  EXPECT_TRUE(std::isnan(UncertaintyOf({10, {}, {}, 1}).hi));
+  EXPECT_TRUE(std::isnan(UncertaintyOf({std::nan(""), Ramp(1), {}, 1}).lo));
+  const Resampled nothing{10, {}, {}, 1};
+  const Sides sides = TestAgainst(nothing, UncertaintyOf(nothing), 0);
+  EXPECT_EQ(sides.above, 1);
+  EXPECT_EQ(sides.below, 1);
+}
+
+TEST(SidesTest, TwiceTheTailOfTheWiderLevel) {
+  const Resampled number{10, Ramp(4), {}, 1};
+  const Uncertainty u = UncertaintyOf(number);
+  // 1.96 standard deviations below the number: 2.5 % twice.
+  EXPECT_NEAR(TestAgainst(number, u, 10 - 1.959964 * u.sd_missions).above, 0.05, 1e-6);
+  EXPECT_EQ(TestAgainst(number, u, 10 - 1.959964 * u.sd_missions).below, 1);
+  EXPECT_NEAR(TestAgainst(number, u, 10 + 1.959964 * u.sd_missions).below, 0.05, 1e-6);
+  EXPECT_EQ(TestAgainst(number, u, 10).above, 1);
+  // Student's t of 4 degrees: 2.776 for 5 %.
+  std::vector<double> networks;
+  for (int i = 0; i < 5000; ++i) networks.push_back(i % 2 == 0 ? 8 : 12);
+  const Resampled wide{10, Ramp(4), networks, 5};
+  const Uncertainty w = UncertaintyOf(wide);
+  EXPECT_NEAR(TestAgainst(wide, w, 10 - 2.776445 * w.sd_networks).above, 0.05, 1e-6);
+}
+
+// By construction ("always offloads"): no spread at all.
+TEST(SidesTest, WithoutSpreadTheSignDecides) {
+  const Resampled constant{100, std::vector<double>(2000, 100.0), {}, 1};
+  const Uncertainty u = UncertaintyOf(constant);
+  EXPECT_EQ(TestAgainst(constant, u, 50).above, 0);
+  EXPECT_EQ(TestAgainst(constant, u, 50).below, 1);
+  EXPECT_EQ(TestAgainst(constant, u, 100).above, 1);
+}
+
+}  // namespace
+}  // namespace ed3r

@@ -1,0 +1,293 @@
+// Verdicts on synthetic runs whose truth is known.
+#include "studies/claims/verdicts.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/core/check.h"
+#include "tests/claims/synthetic_run.h"
+
+namespace ed3r {
+namespace {
+
+Claim Value(const std::string& arm, const std::string& metric, const std::string& value,
+            const std::string& unit) {
+  return {.id = "V",
+          .where = "",
+          .strategy = arm,
+          .metric = metric,
+          .kind = "value",
+          .paper_value = value,
+          .unit = unit,
+          .source = "printed",
+          .comparison = "",
+          .tolerance = 0,
+          .exact_words = "",
+          .inconsistent = "",
+          .unmeasured = "",
+          .note = ""};
+}
+
+Claim Energy(const std::string& arm, const std::string& value) {
+  return Value(arm, "total_energy_kj", value, "kJ");
+}
+
+Claim Order(const std::string& comparison, double tolerance = 0) {
+  Claim claim = Energy("", "");
+  claim.kind = "order", claim.comparison = comparison, claim.tolerance = tolerance;
+  return claim;
+}
+
+Claim Reduction(const std::string& comparison, const std::string& percent) {
+  Claim claim = Order("100*(1 - " + comparison + ")");
+  claim.kind = "ratio", claim.paper_value = percent;
+  return claim;
+}
+
+JudgedClaim JudgeOne(const Claim& claim, const std::vector<ArmData>& arms) {
+  return JudgeClaims({claim}, arms).claims.front();
+}
+
+Verdict VerdictOf(const Claim& claim, const std::vector<ArmData>& arms) {
+  return JudgeOne(claim, arms).all.verdict;
+}
+
+std::vector<ArmData> ThreeArms() {
+  return {MakeArm({"ed3r-75", 20}), MakeArm({"ecd2r", 25}), MakeArm({"rbs", 35, 0.2, 0, false})};
+}
+
+TEST(VerdictsTest, NumbersOfOneArm) {
+  const std::vector<ArmData> arms = ThreeArms();
+  EXPECT_EQ(VerdictOf(Energy("ed3r-75", "20.1"), arms), Verdict::kReproduced);
+  EXPECT_EQ(VerdictOf(Energy("ed3r-75", "30"), arms), Verdict::kDiffers);
+  const Judgement far = JudgeOne(Energy("ed3r-75", "30"), arms).all;
+  EXPECT_NEAR(far.ours, 20, 0.7);
+  EXPECT_LT(far.lo, far.ours);
+  EXPECT_LT(far.hi, 30);
+  EXPECT_TRUE(std::isnan(far.p_holm));
+  EXPECT_NE(far.why.find("ours - paper = -"), std::string::npos);
+}
+
+TEST(VerdictsTest, RoundingAndToleranceCount) {
+  const std::vector<ArmData> arms = ThreeArms();
+  Claim claim = Energy("ed3r-75", "24");
+  EXPECT_EQ(VerdictOf(claim, arms), Verdict::kDiffers);
+  claim.tolerance = 5;
+  EXPECT_EQ(VerdictOf(claim, arms), Verdict::kReproduced);
+  claim.tolerance = 3;
+  EXPECT_EQ(VerdictOf(claim, arms), Verdict::kDiffers);
+}
+
+// A maximum has no interval: only its tolerance can hold it.
+TEST(VerdictsTest, NumbersWithoutAnInterval) {
+  const std::vector<ArmData> arms = ThreeArms();
+  Claim claim = Value("ed3r-75", "duration_max_min", "4", "min");  // 20 kJ x 1.5 at 130 W, and noise
+  EXPECT_EQ(VerdictOf(claim, arms), Verdict::kDiffers);
+  claim.tolerance = 1;
+  EXPECT_EQ(VerdictOf(claim, arms), Verdict::kReproduced);
+}
+
+TEST(VerdictsTest, AnIntervalThatHoldsAlmostAnythingDecidesNothing) {
+  const std::vector<ArmData> lucky = {MakeArm({"ed3r-75", 20, 0, 0.9})};
+  EXPECT_EQ(VerdictOf(Energy("ed3r-75", "20"), lucky), Verdict::kNotDecidable);
+  EXPECT_EQ(VerdictOf(Energy("ed3r-75", "80"), lucky), Verdict::kDiffers);
+}
+
+TEST(VerdictsTest, ValuesThatDoNotExist) {
+  const std::vector<ArmData> arms = ThreeArms();  // no network predicts anything in them
+  EXPECT_EQ(VerdictOf(Value("rbs", "lf_accuracy_pct", "n/a", ""), arms), Verdict::kReproduced);
+  EXPECT_EQ(VerdictOf(Value("rbs", "lf_accuracy_pct", "75", "%"), arms), Verdict::kNotMeasured);
+  EXPECT_EQ(VerdictOf(Value("rbs", "msr_pct", "n/a", ""), arms), Verdict::kDiffers);
+}
+
+TEST(VerdictsTest, Orders) {
+  const std::vector<ArmData> arms = ThreeArms();
+  EXPECT_EQ(VerdictOf(Order("ed3r-75 < ecd2r < rbs"), arms), Verdict::kDirectionHolds);
+  EXPECT_EQ(VerdictOf(Order("rbs < ed3r-75"), arms), Verdict::kDiffers);
+  EXPECT_EQ(VerdictOf(Order("ed3r-75 < ecd2r; rbs < ecd2r"), arms), Verdict::kDiffers);
+}
+
+TEST(VerdictsTest, AnOrderIsAsCertainAsItsLeastCertainPart) {
+  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20}), MakeArm({"ecd2r", 20.6}),
+                                     MakeArm({"rbs", 35})};
+  const Judgement judged = JudgeOne(Order("ed3r-75 < ecd2r < rbs"), arms).all;
+  EXPECT_EQ(judged.p, JudgeOne(Order("ed3r-75 < ecd2r"), arms).all.p);
+  EXPECT_NEAR(judged.ours, 0.6, 0.3);
+  EXPECT_NE(judged.why.find("ed3r-75 < ecd2r"), std::string::npos);
+}
+
+TEST(VerdictsTest, AnOrderWithItsPrintedSizesIsReproduced) {
+  const std::vector<ArmData> arms = ThreeArms();
+  EXPECT_EQ(JudgeClaims({Order("ed3r-75 < ecd2r"), Energy("ed3r-75", "20"), Energy("ecd2r", "25")}, arms)
+                .claims[0]
+                .all.verdict,
+            Verdict::kReproduced);
+  EXPECT_EQ(JudgeClaims({Order("ed3r-75 < ecd2r"), Energy("ed3r-75", "20"), Energy("ecd2r", "60")}, arms)
+                .claims[0]
+                .all.verdict,
+            Verdict::kDirectionHolds);
+}
+
+TEST(VerdictsTest, TiesAreNotDecidable) {
+  ArmData twin = MakeArm({"ed3r-75", 20});
+  twin.name = "ecd2r";
+  const JudgedClaim judged = JudgeOne(Order("ed3r-75 < ecd2r"), {MakeArm({"ed3r-75", 20}), twin});
+  EXPECT_EQ(judged.all.verdict, Verdict::kNotDecidable);
+  EXPECT_EQ(judged.all.ours, 0);
+  EXPECT_EQ(judged.all.p, 1);
+  EXPECT_EQ(VerdictOf(Order("ed3r-75 ~ ecd2r", 0.5), {MakeArm({"ed3r-75", 20}), twin}), Verdict::kReproduced);
+}
+
+TEST(VerdictsTest, Similarities) {
+  const std::vector<ArmData> arms = ThreeArms();
+  EXPECT_EQ(VerdictOf(Order("ed3r-75 ~ ecd2r", 9), arms), Verdict::kReproduced);
+  EXPECT_EQ(VerdictOf(Order("ed3r-75 ~ ecd2r", 1), arms), Verdict::kDiffers);
+  EXPECT_EQ(VerdictOf(Order("ed3r-75 ~ ecd2r", 5), arms), Verdict::kNotDecidable);
+}
+
+TEST(VerdictsTest, Comparisons) {
+  const std::vector<ArmData> arms = ThreeArms();
+  EXPECT_EQ(VerdictOf(Reduction("ed3r-75 / ecd2r", "20"), arms), Verdict::kReproduced);
+  EXPECT_EQ(VerdictOf(Reduction("ed3r-75 / ecd2r", "60"), arms), Verdict::kDirectionHolds);
+  EXPECT_EQ(VerdictOf(Reduction("ecd2r / ed3r-75", "20"), arms), Verdict::kDiffers);
+  // Luck of 30 % either way: the interval holds 20 % and nothing at all.
+  const std::vector<ArmData> lucky = {MakeArm({"ed3r-75", 20, 0, 0.3}), MakeArm({"ecd2r", 25})};
+  EXPECT_EQ(VerdictOf(Reduction("ed3r-75 / ecd2r", "20"), lucky), Verdict::kNotDecidable);
+}
+
+TEST(VerdictsTest, PairingMakesSmallDifferencesCertain) {
+  // Hardness varies by a third between missions, an arm's own noise is small: 1 % of difference shows only in pairs.
+  const SyntheticDesign quiet{.missions = 280, .networks = 1, .places = 28, .own_noise = 0.01};
+  const ArmData first = MakeArm({"ed3r-75", 20}, quiet);
+  ArmData second = MakeArm({"ecd2r", 20.2}, quiet);
+  EXPECT_EQ(VerdictOf(Order("ed3r-75 < ecd2r"), {first, second}), Verdict::kDirectionHolds);
+  for (MissionRecord& mission : second.missions)
+    mission.scenario += 10000;  // other scenarios: nothing is shared
+  EXPECT_EQ(VerdictOf(Order("ed3r-75 < ecd2r"), {first, second}), Verdict::kNotDecidable);
+}
+
+TEST(VerdictsTest, LuckOfTrainingUndoesWhatOneNetworkShows) {
+  const SyntheticArm lucky{"ed3r-75", 20, 0, 0.4}, other{"ecd2r", 22};
+  SyntheticDesign single;
+  single.networks = 1;
+  const JudgedClaim one =
+      JudgeOne(Order("ed3r-75 < ecd2r"), {MakeArm(lucky, single), MakeArm(other, single)});
+  EXPECT_EQ(one.all.verdict, Verdict::kDirectionHolds);
+  EXPECT_TRUE(one.by_network.empty());
+
+  const JudgedClaim five = JudgeOne(Order("ed3r-75 < ecd2r"), {MakeArm(lucky), MakeArm(other)});
+  EXPECT_EQ(five.all.verdict, Verdict::kNotDecidable);
+  // 12, 16, 20, 24, 28 kJ against 22.
+  ASSERT_EQ(five.by_network.size(), 5u);
+  EXPECT_EQ(CountByNetwork(five),
+            (std::map<Verdict, int>{{Verdict::kDirectionHolds, 3}, {Verdict::kDiffers, 2}}));
+  EXPECT_NEAR(five.by_network[0].ours, 10, 1.5);
+  EXPECT_NEAR(five.by_network[4].ours, -6, 1.5);
+}
+
+TEST(VerdictsTest, ArmsWithoutNetworksKnowNoLuckOfTraining) {
+  const std::vector<ArmData> arms = ThreeArms();
+  const Judgement rbs = JudgeOne(Energy("rbs-p85", "40"), arms).all;
+  SyntheticDesign single;
+  single.networks = 1;
+  const Judgement alone =
+      JudgeOne(Energy("rbs-p85", "40"), {MakeArm({"rbs", 35, 0.2, 0, false}, single)}).all;
+  EXPECT_EQ(rbs.ours, alone.ours);
+  EXPECT_NEAR(rbs.hi - rbs.lo, alone.hi - alone.lo, 0.25 * (alone.hi - alone.lo));
+}
+
+TEST(VerdictsTest, P85GroupsAreTheLongestMissions) {
+  const std::vector<ArmData> arms = ThreeArms();
+  const Judgement judged = JudgeOne(Energy("ed3r-p85", "28.5"), arms).all;
+  EXPECT_EQ(judged.verdict, Verdict::kReproduced);  // hardness 1.35 to 1.5
+  EXPECT_NEAR(judged.ours, 28.5, 0.5);
+  EXPECT_LT(judged.lo, judged.ours);
+  EXPECT_GT(judged.hi, judged.ours);
+  EXPECT_EQ(VerdictOf(Reduction("ed3r-p85 / rbs-p85", "42.9"), arms), Verdict::kReproduced);
+}
+
+TEST(VerdictsTest, Frontiers) {
+  std::vector<ArmData> arms;
+  for (const char* name : {"ablation-1", "ablation-2", "ablation-3", "ablation-4", "ecd2r", "rbs"})
+    arms.push_back(MakeArm({name, 40, 0.5}));
+  arms.push_back(MakeArm({"ed3r-65", 10, 0.3}));
+  arms.push_back(MakeArm({"ed3r-75", 20, 0.02}));
+  arms.push_back(MakeArm({"ed3r-85", 30, 0.3}));
+  EXPECT_EQ(VerdictOf(Order("dominated(rbs, ablation-1..4) by ed3r-65, ed3r-75"), arms),
+            Verdict::kDirectionHolds);
+  EXPECT_EQ(VerdictOf(Order("dominated(ed3r-75) by ed3r-85, rbs"), arms), Verdict::kDiffers);
+  EXPECT_EQ(VerdictOf(Order("frontier(ed3r-65, ed3r-75)"), arms), Verdict::kDirectionHolds);
+  EXPECT_EQ(VerdictOf(Order("frontier(ed3r-85)"), arms), Verdict::kDiffers);
+}
+
+TEST(VerdictsTest, WhatThePaperContradictsIsNotHeldAgainstUs) {
+  Claim claim = Energy("ed3r-75", "30");
+  claim.inconsistent = "it says 21 elsewhere";
+  const Judgement judged = JudgeOne(claim, ThreeArms()).all;
+  EXPECT_EQ(judged.verdict, Verdict::kPaperInconsistent);
+  EXPECT_EQ(judged.why, "it says 21 elsewhere");
+  EXPECT_NEAR(judged.ours, 20, 0.7);
+}
+
+TEST(VerdictsTest, WhatIsNotThereIsNotMeasured) {
+  Claim never = Order("");
+  never.unmeasured = "a choice";
+  EXPECT_EQ(JudgeOne(never, ThreeArms()).all.why, "a choice");
+  const Judgement judged = JudgeOne(Order("ed3r-75 < ablation-1..2"), ThreeArms()).all;
+  EXPECT_EQ(judged.verdict, Verdict::kNotMeasured);
+  EXPECT_EQ(judged.why, "not in this run: ablation-1, ablation-2");
+  EXPECT_TRUE(std::isnan(judged.ours));
+}
+
+TEST(VerdictsTest, EmptyArmsAndEmptyRuns) {
+  std::vector<ArmData> arms = ThreeArms();
+  arms[1].missions.clear();
+  EXPECT_EQ(VerdictOf(Order("ed3r-75 < ecd2r"), arms), Verdict::kNotMeasured);
+  EXPECT_EQ(VerdictOf(Order("ed3r-75 < rbs"), arms), Verdict::kDirectionHolds);
+  const ClaimStudy nothing = JudgeClaims(PaperClaims(), {});
+  EXPECT_FALSE(nothing.HasArms());
+  EXPECT_EQ(nothing.claims.size(), PaperClaims().size());
+  // One mission has no interval: nothing is decided, nothing breaks.
+  SyntheticDesign one;
+  one.missions = 1;
+  const std::vector<ArmData> tiny = {MakeArm({"ed3r-75", 20}, one), MakeArm({"ecd2r", 90}, one)};
+  EXPECT_NO_THROW(JudgeClaims(PaperClaims(), tiny));
+}
+
+TEST(VerdictsTest, RepeatedClaimsAreOneQuestion) {
+  const std::vector<ArmData> arms = ThreeArms();
+  const std::vector<Claim> once = {Order("ed3r-75 < ecd2r"), Order("ecd2r < rbs")};
+  std::vector<Claim> often = once;
+  for (int i = 0; i < 50; ++i) often.push_back(once[0]);
+  EXPECT_EQ(JudgeClaims(once, arms).claims[1].all.p_holm, JudgeClaims(often, arms).claims[1].all.p_holm);
+}
+
+TEST(VerdictsTest, UnreadableClaimsAreErrors) {
+  EXPECT_THROW(JudgeClaims({Order("ed3r-75 is best")}, ThreeArms()), UserError);
+}
+
+TEST(VerdictsTest, ArmsOfOtherRotationsArePairedAndNamed) {
+  SyntheticDesign other;
+  other.places = 14;
+  const ClaimStudy study =
+      JudgeClaims({Order("ed3r-75 < ecd2r")},
+                  std::vector<ArmData>{MakeArm({"ed3r-75", 20}), MakeArm({"ecd2r", 25}, other)});
+  EXPECT_TRUE(study.networks_disagree);
+  EXPECT_EQ(study.claims[0].all.verdict, Verdict::kDirectionHolds);
+  EXPECT_FALSE(JudgeClaims({Order("ed3r-75 < ecd2r")}, ThreeArms()).networks_disagree);
+}
+
+TEST(VerdictsTest, AreTheSameEveryTime) {
+  const std::vector<ArmData> arms = ThreeArms();
+  const ClaimStudy a = JudgeClaims(PaperClaims(), arms), b = JudgeClaims(PaperClaims(), arms);
+  for (std::size_t i = 0; i < a.claims.size(); ++i) {
+    EXPECT_EQ(a.claims[i].all.verdict, b.claims[i].all.verdict);
+    if (!std::isnan(a.claims[i].all.lo)) {
+      EXPECT_EQ(a.claims[i].all.lo, b.claims[i].all.lo);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ed3r

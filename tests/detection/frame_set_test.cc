@@ -1,0 +1,90 @@
+#include "studies/detection/frame_set.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FrameSetTest : public testing::Test {
+ protected:
+  FrameSetTest() : folder_(fs::temp_directory_path() / ("ed3r-frames-" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+    WriteNpy("(2, 2, 3, 3)", 36);
+    WriteLabels(
+        "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label\n"
+        "0,7,0,\"a, b\",x,12.5,3,4,0.25,1\n"
+        "1,7,1,\"a, b\",x,12.5,0,0,0,0\n");
+  }
+  ~FrameSetTest() override { fs::remove_all(folder_); }
+
+  void WriteNpy(const std::string& shape, int bytes, const std::string& type = "|u1") {
+    std::string header = "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }";
+    header.append(117 - header.size(), ' ');
+    header += '\n';
+    std::ofstream file(folder_ / "frames.npy", std::ios::binary);
+    file << std::string("\x93NUMPY\x01\x00", 8) << static_cast<char>(header.size()) << '\0' << header;
+    for (int i = 0; i < bytes; ++i) file << static_cast<char>(i);
+  }
+  void WriteLabels(const std::string& text) { std::ofstream(folder_ / "labels.csv") << text; }
+
+  void ExpectRefusal(const std::string& part) {
+    try {
+      ReadFrameSet(folder_);
+      ADD_FAILURE() << part;
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(FrameSetTest, ReadsFramesAndLabels) {
+  ASSERT_TRUE(IsFrameSet(folder_));
+  const FrameSet set = ReadFrameSet(folder_);
+  EXPECT_EQ(set.frames.frames, 2);
+  EXPECT_EQ(set.frames.height_px, 2);
+  EXPECT_EQ(set.frames.width_px, 3);
+  EXPECT_EQ(set.frames.rgb[35], 35);
+  EXPECT_EQ(set.labels[0].world, "a, b");
+  EXPECT_EQ(set.labels[0].view, 7);
+  EXPECT_EQ(set.labels[0].occluded, 0.25);
+  EXPECT_TRUE(set.labels[0].positive);
+  EXPECT_FALSE(set.labels[1].positive);
+}
+
+TEST_F(FrameSetTest, RefusesFilesThatDoNotFit) {
+  WriteNpy("(2, 2, 3, 3)", 35);
+  ExpectRefusal("damaged");
+  WriteNpy("(2, 2, 3)", 12);
+  ExpectRefusal("frames x height x width x 3");
+  WriteNpy("(2, 2, 3, 3)", 36, "<f4");
+  ExpectRefusal("uint8");
+  WriteNpy("(3, 2, 3, 3)", 54);
+  ExpectRefusal("2 rows for 3 frames");
+  std::ofstream(folder_ / "frames.npy") << "nothing";
+  ExpectRefusal("no NPY");
+}
+
+TEST_F(FrameSetTest, RefusesLabelsWithoutAColumn) {
+  WriteLabels("index,view\n0,1\n1,1\n");
+  ExpectRefusal("world");
+}
+
+TEST_F(FrameSetTest, FoldersWithoutPicturesAreRefused) {
+  EXPECT_THROW(ReadPictures(folder_), UserError);
+  EXPECT_THROW(ReadPictures(folder_ / "nowhere.png"), UserError);
+  std::ofstream(folder_ / "bad.png") << "no picture";
+  EXPECT_THROW(ReadPictures(folder_), UserError);
+}
+
+}  // namespace
+}  // namespace ed3r
