@@ -35,6 +35,7 @@ class Run:
         self.data = data
         self.by_key = {arm["key"]: arm for arm in data["arms"]}
         self.colours = plot_style.arm_colours(data["arms"])
+        plot_style.shorten_labels(data["arms"])
 
     def arms(self, keys):
         return [self.by_key[key] for key in keys]

@@ -8,7 +8,9 @@ def arm_rows(axis, arms, run):
     axis.set_ylim(len(arms) - 0.45, -0.55)
     axis.set_yticks(range(len(arms)))
     axis.set_yticklabels([arm["label"] for arm in arms])
+    size = 9.5 if all(style.widest_line(arm["label"]) <= 16 for arm in arms) else 8
     for tick, arm in zip(axis.get_yticklabels(), arms):
+        tick.set_fontsize(size)
         tick.set_color(run.colour(arm))
         tick.set_fontweight("bold")
     axis.tick_params(axis="y", length=0)

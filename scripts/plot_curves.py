@@ -67,13 +67,16 @@ def place_labels(axis, labels, at, marks):
     axis.figure.canvas.draw()
     pixels = axis.transData.transform(np.array(marks))
     frame, taken = axis.get_window_extent(), []
-    sides = [(10, 8, "left"), (10, -15, "left"), (-10, 8, "right"), (-10, -15, "right"), (0, 13, "center"), (0, -20, "center"),
-             (13, -3, "left"), (-13, -3, "right"), (12, 24, "left"), (-12, 24, "right"), (12, -32, "left"), (-12, -32, "right")]
+    size = 9 if len(labels) <= 12 and all(style.widest_line(text) <= 14 for text, _ in labels) else 7
+    sides = [(10, 7, "left"), (10, -7, "left"), (-10, 7, "right"), (-10, -7, "right"), (0, 12, "center"), (0, -12, "center"),
+             (13, 0, "left"), (-13, 0, "right"), (12, 26, "left"), (-12, 26, "right"), (12, -26, "left"), (-12, -26, "right"),
+             (12, 45, "left"), (-12, 45, "right"), (12, -45, "left"), (-12, -45, "right")]
+    level = {1: "bottom", 0: "center", -1: "top"}
     for (text, colour), point in zip(labels, at):
         best = None
         for i, (dx, dy, side) in enumerate(sides):
-            label = axis.annotate(text, point, xytext=(dx, dy), textcoords="offset points", ha=side, color=colour,
-                                  fontweight="bold", fontsize=9, zorder=8)
+            label = axis.annotate(text, point, xytext=(dx, dy), textcoords="offset points", ha=side,
+                                  va=level[np.sign(dy)], color=colour, fontweight="bold", fontsize=size, zorder=8)
             box = label.get_window_extent().padded(2)
             covered = sum(box.overlaps(other) for other in taken) + sum(box.contains(*p) for p in pixels)
             outside = not (frame.contains(box.x0, box.y0) and frame.contains(box.x1, box.y1))
@@ -84,8 +87,8 @@ def place_labels(axis, labels, at, marks):
         _, dx, dy, side, box = best
         taken.append(box)
         far = abs(dy) > 22
-        axis.annotate(text, point, xytext=(dx, dy), textcoords="offset points", ha=side, color=colour, fontweight="bold",
-                      fontsize=9, zorder=8, arrowprops=dict(arrowstyle="-", color=colour, lw=0.6) if far else None)
+        axis.annotate(text, point, xytext=(dx, dy), textcoords="offset points", ha=side, va=level[np.sign(dy)], color=colour,
+                      fontweight="bold", fontsize=size, zorder=8, arrowprops=dict(arrowstyle="-", color=colour, lw=0.6) if far else None)
 
 
 def draw_convergence(run, figure):

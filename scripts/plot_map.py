@@ -16,6 +16,7 @@ def draw_map(run, figure):
     columns = len(missions)
     canvas, axes = plt.subplots(1, columns, figsize=(3.55 * columns + 0.6, 4.1), squeeze=False)
     colours = plt.get_cmap("plasma")
+    labels = {(arm["stage"], arm["name"]): arm["label"].replace("\n", ", ") for arm in run.data["arms"]}
     for axis, mission in zip(axes[0], missions):
         if world:
             draw_ground(axis, world)
@@ -24,7 +25,7 @@ def draw_map(run, figure):
         draw_path(axis, mission, colours)
         west, south, side = window(mission, world)
         axis.set(xlim=(west, west + side), ylim=(south, south + side), aspect="equal", xlabel="east [m]")
-        axis.set_title(f"{OUTCOMES[mission['outcome']]}: {mission['label']}, mission {mission['mission']}\n"
+        axis.set_title(f"{OUTCOMES[mission['outcome']]}\n{labels[mission['stage'], mission['arm']]}, mission {mission['mission']}\n"
                        f"{mission['duration_min']:.1f} min, {mission['energy_kj']:.1f} kJ, {len(mission['x_m']) - 1} timesteps",
                        fontsize=9)
     axes[0, 0].set_ylabel("north [m]")

@@ -34,36 +34,45 @@ def draw_overview(run, figure):
             draw_strip(axis, run.colour(arm), arm, i * (width + gap), width, name, metric, unit, digits)
         axis.set_ylabel(label)
         axis.yaxis.grid(True)
-        set_limits(axis, arms, name)
+        set_limits(axis, arms, name, metric)
         last_warmup = len(figure["warmups"])
         if last_warmup:
             axis.axvline(last_warmup * (width + gap) - gap / 2, color=style.INK, lw=1.1, ls="--")
         for i in range(last_warmup + 1, len(arms)):
             axis.axvline(i * (width + gap) - gap / 2, color=style.FAINT, lw=0.8, ls=":")
     top, bottom = axes[0, 0], axes[-1, 0]
+    labels = [arm["label"] + eta_text(arm) for arm in arms]
+    room_pt = 0.9 * 72 * style.WIDTH_IN / len(arms)
+    size = min(9.0, *(room_pt / (0.68 * style.widest_line(label.replace("$", ""))) for label in labels))
     for i, arm in enumerate(arms):
-        eta = f", $\\eta_{{min}}$ {arm['eta_min_pct']:g} %" if arm["strategy"] == "ed3r" and arm["eta_min_pct"] else ""
         drawn = shown_missions(arm).stop
         count = f"{drawn} of {arm['missions']}" if drawn < arm["missions"] else f"{drawn}"
-        top.text(i * (width + gap) + width / 2, 1.04, arm["label"] + eta, ha="center", va="bottom", fontweight="bold",
-                 color=run.colour(arm), transform=top.get_xaxis_transform(), fontsize=9 if len(arms) < 7 else 7.5)
+        top.text(i * (width + gap) + width / 2, 1.04, labels[i], ha="center", va="bottom", fontweight="bold",
+                 color=run.colour(arm), transform=top.get_xaxis_transform(), fontsize=max(5.0, size))
         bottom.text(i * (width + gap) + width / 2, -0.06, f"{count} missions", ha="center", va="top", color=style.FAINT,
                     transform=bottom.get_xaxis_transform(), fontsize=8.5)
     bottom.set_xticks([])
     bottom.set_xlim(-gap / 2, len(arms) * (width + gap) - gap / 2)
     handles = [Line2D([], [], marker="o", ls="none", ms=4, color=style.FAINT, label="mission"),
                Line2D([], [], marker="o", ls="none", ms=4, mfc="none", color=style.FAINT, label="battery depleted"),
-               Line2D([], [], color=style.INK, lw=2, label="mean of all missions, 95 %"),
-               Line2D([], [], label="paper", **style.PAPER)]
+               Line2D([], [], color=style.INK, lw=2, label="mean of all missions, 95 %")]
+    if any(arm["metrics"][panel[1]]["paper"] is not None for panel in panels for arm in arms):
+        handles.append(Line2D([], [], label="paper", **style.PAPER))
     canvas.legend(handles=handles, loc="lower center", ncol=4, bbox_to_anchor=(0.5, -0.035))
     canvas.align_ylabels(axes[:, 0])
     canvas.tight_layout(h_pad=0.8)
     return canvas
 
 
-def set_limits(axis, arms, name):
-    """The range of the missions, not of the intervals, which may be anything where few networks flew."""
-    values = np.concatenate([column(arm, name)[shown_missions(arm)] for arm in arms])
+def eta_text(arm):
+    known = arm["strategy"] == "ed3r" and arm["eta_min_pct"]
+    return f", $\\eta_{{min}}$ {arm['eta_min_pct']:g} %" if known else ""
+
+
+def set_limits(axis, arms, name, metric):
+    """The range of the missions and of the paper's values, not of the intervals, which may be anything where few networks flew."""
+    papers = [arm["metrics"][metric]["paper"] for arm in arms]
+    values = np.concatenate([column(arm, name)[shown_missions(arm)] for arm in arms] + [[p for p in papers if p is not None]])
     low, high = np.nanmin(values), np.nanmax(values)
     low = 0 if name == "energy_kj" else low
     pad = 0.08 * max(high - low, 1e-6)
@@ -155,4 +164,6 @@ def draw_ended(axis, arms, run):
                   ha="left" if longest > 13 else "right")
     axis.set(xlim=(0, max(longest, 10.5)), ylim=(0, 101), xlabel="time [min]", ylabel="missions ended [%]")
     axis.grid(True)
-    axis.legend(loc="lower right", fontsize=8, bbox_to_anchor=(1.0, 0.06))
+    # Longer names stand beside the bars, in the same colours.
+    if len(arms) <= 6 and all(style.widest_line(arm["label"]) <= 14 for arm in arms):
+        axis.legend(loc="lower right", fontsize=8, bbox_to_anchor=(1.0, 0.06))

@@ -59,3 +59,19 @@ def arm_colours(arms):
             colours[arm["key"]] = OTHER_COLOURS[taken % len(OTHER_COLOURS)]
             taken += 1
     return colours
+
+
+def shorten_labels(arms):
+    """Names that a sweep made of settings ("rbs,mass_kg=1.8,battery_mah=3500"): what all share is dropped, the rest
+    goes on a line for each setting."""
+    made = [arm for arm in arms if arm["name"] not in ARM_COLOURS and "," in arm["label"]]
+    if len(made) < 2:
+        return
+    shared = set.intersection(*(set(arm["label"].split(",")) for arm in made))
+    for arm in made:
+        own = [part for part in arm["label"].split(",") if part not in shared]
+        arm["label"] = "\n".join(own) if own else arm["label"]
+
+
+def widest_line(label):
+    return max(len(line) for line in label.split("\n"))

@@ -107,6 +107,10 @@ Command AddReport(CLI::App& program) {
   parser->add_flag("--no-figures", options->no_figures,
                    "Draw nothing (no Python); the figures' data are still written");
   parser->add_flag("--json", options->json, "Print JSON");
+  parser->footer(
+      "Figures are drawn by scripts/plot.py, found in the source tree that this program was built from or in "
+      "$ED3R_SCRIPTS, with /usr/bin/python3 or $ED3R_PYTHON, which needs matplotlib. Without them all else "
+      "is written.");
   return {parser, [options] { return MakeReportOf(*options); }};
 }
 

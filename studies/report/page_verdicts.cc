@@ -60,8 +60,8 @@ std::string VerdictSection(const ClaimStudy& study) {
   html +=
       "<details><summary>Every claim that this run can judge</summary>\n<div class=\"wide\"><table "
       "class=\"claims\">\n"
-      "<tr><th>claim</th><th>says</th><th>paper</th><th>ours, 95 "
-      "%</th><th>p</th><th>networks</th><th>verdict</th></tr>\n";
+      "<tr><th>claim</th><th class=\"text\">says</th><th>paper</th><th>ours, 95 "
+      "%</th><th>p</th><th>networks</th><th class=\"text\">verdict</th></tr>\n";
   for (const JudgedClaim& judged : study.claims)
     if (judged.all.verdict != Verdict::kNotMeasured) html += Row(judged);
   return html +
