@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <memory>
 
 #include "engine/app/commands.h"
+#include "engine/app/perception_looks.h"
 #include "engine/core/check.h"
 #include "studies/fit/fit.h"
 #include "studies/fit/report.h"
@@ -15,6 +18,7 @@ namespace {
 struct Options {
   FitOptions fit;
   SelfCheckOptions self_check{.model = "momentum", .truth = {}, .fits = 0, .log = {}};
+  std::string perception;  // run directory
   std::vector<std::string> set;
   std::string out;
   bool json = false;
@@ -29,7 +33,29 @@ int SelfCheck(const Options& options) {
   return kDone;
 }
 
+void WriteText(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw UserError(file.string() + ": cannot be written");
+}
+
+int FitPerception(const Options& options) {
+  const PerceptionLooks found = LooksOfRun(options.perception);
+  const ProfileFit fit = FitProfile(found.looks, found.configured);
+  if (!options.out.empty()) {
+    const std::filesystem::path folder(options.out);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    WriteText(folder / "perception.yaml", ProfileFitYaml(fit, options.perception));
+    WriteText(folder / "perception.json", ProfileFitJson(fit).dump(2) + "\n");
+    WriteText(folder / "looks.csv", LooksCsv(found.looks, fit));
+  }
+  fmt::print("{}\n", options.json ? ProfileFitJson(fit).dump(2) : ProfileFitText(fit));
+  return kDone;
+}
+
 int Fit(Options options) {
+  if (!options.perception.empty()) return FitPerception(options);
   if (options.self_check.fits > 0) return SelfCheck(options);
   if (options.fit.logs.empty())
     throw UserError("fit: a flight log is needed, e.g. sweeps/data/flight/m100_flights.csv");
@@ -60,9 +86,15 @@ Command AddFit(CLI::App& program) {
       ->allow_extra_args(false);
   parser->add_option("--evaluate-format", options->fit.evaluate_format,
                      "Their columns; default those of LOG");
+  parser
+      ->add_option("--perception", options->perception,
+                   "Instead of LOG: fit the fast perception tier to a run of the pixel tier (run directory)")
+      ->excludes("LOG");
   parser->add_option("--set", options->set, "robot.KEY=VALUE of the airframe that flew")
       ->allow_extra_args(false);
-  parser->add_option("--out", options->out, "Folder for report, fitted.yaml, flights.csv and rows.csv");
+  parser->add_option("--out", options->out,
+                     "Folder for report, fitted.yaml, flights.csv and rows.csv; with --perception for "
+                     "perception.yaml, perception.json, looks.csv");
   CLI::Option* check =
       parser
           ->add_option(

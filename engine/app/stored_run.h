@@ -27,6 +27,8 @@ class StoredRun {
   MissionTask Task(const RunId& id);
 
   ResultReader& Reader() { return reader_; }
+  const SweepPlan& Plan() const { return plan_; }
+  const Inputs& SharedInputs() const { return inputs_; }
 
  private:
   ResultReader reader_;

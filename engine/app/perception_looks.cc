@@ -1,0 +1,57 @@
+#include "engine/app/perception_looks.h"
+
+#include <fmt/format.h>
+
+#include "engine/agents/decisions.h"
+#include "engine/app/stored_run.h"
+#include "engine/core/check.h"
+#include "engine/perception/view.h"
+
+namespace ed3r {
+namespace {
+
+// As the mission saw them: from where it stood after the move of each timestep.
+void AddMission(const StoredMission& mission, const Scene& scene, const Config& config, std::uint64_t seed,
+                std::vector<PeriodLook>& looks) {
+  const FireView fire(scene, static_cast<int>(mission.record.site));
+  const std::vector<Distractor> distractors =
+      DrawDistractors(scene, config.perception, seed, static_cast<std::uint32_t>(mission.record.scenario));
+  for (const TimestepRecord& step : mission.record.steps) {
+    const View view = fire.Look({{step.x_m, step.y_m, step.z_m}, step.yaw_rad, step.tilt_rad}, config.sensing,
+                                config.perception, distractors);
+    looks.push_back({.quantized = step.execution == static_cast<std::int64_t>(Execution::kQuantized),
+                     .fire_share = view.fire_share,
+                     .smoke_share = view.smoke_share,
+                     .distractor_share = view.distractor_share,
+                     .mean = step.confidence_mean,
+                     .deviation = step.confidence_sd,
+                     .fire_in_view_pixels = step.fire_in_view != 0,
+                     .fire_in_view_geometry = view.fire_in_view});
+  }
+}
+
+}  // namespace
+
+PerceptionLooks LooksOfRun(const std::string& dir) {
+  StoredRun run(dir, "");
+  const SweepPlan& plan = run.Plan();
+  PerceptionLooks found;
+  for (int s = 0; s < static_cast<int>(plan.stages.size()); ++s) {
+    const Stage& stage = plan.stages[static_cast<std::size_t>(s)];
+    for (int a = 0; a < static_cast<int>(stage.arms.size()); ++a) {
+      const Config& config = stage.arms[static_cast<std::size_t>(a)].config;
+      if (stage.kind != StageKind::kFly || config.perception.tier != PerceptionTier::kPixels) continue;
+      if (found.looks.empty()) found.configured = config.perception;
+      const Scene& scene = run.SharedInputs().SceneOf(config);
+      run.Reader().ForEachMission(s, a, Steps::kLoad, [&](const StoredMission& mission) {
+        AddMission(mission, scene, config, plan.seed, found.looks);
+      });
+    }
+  }
+  if (found.looks.empty())
+    throw UserError(
+        fmt::format("{}: no mission of this run looked at pixels (perception.tier: pixels)", dir));
+  return found;
+}
+
+}  // namespace ed3r

@@ -1,0 +1,19 @@
+// What the fast tier's geometry sees from every pose at which a stored run of the pixel tier looked.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/perception/profile_fit.h"
+
+namespace ed3r {
+
+struct PerceptionLooks {
+  std::vector<PeriodLook> looks;
+  PerceptionConfig configured;  // of the first arm that looked at pixels
+};
+
+// Throws UserError where the run cannot be read again or none of its arms looked at pixels.
+PerceptionLooks LooksOfRun(const std::string& dir);
+
+}  // namespace ed3r
