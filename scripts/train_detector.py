@@ -54,6 +54,12 @@ def script_hash() -> str:
     return digest.hexdigest()
 
 
+def renderer_of(folder: pathlib.Path):
+    """The code that rendered the frames, as their manifest tells; None for other data sets."""
+    manifest = folder / "manifest.json"
+    return json.loads(manifest.read_text(encoding="utf-8")).get("code") if manifest.is_file() else None
+
+
 def export_onnx(path: pathlib.Path, network) -> None:
     """With the pixel scaling and the sigmoid inside, so that it takes bytes / 255 and answers a probability."""
     import torch
@@ -107,7 +113,8 @@ def train_and_write(options, training, validation, tests, data_hash: str) -> Non
     provenance = {"data_sha256": data_hash, "dataset": options.dataset, "seed": options.seed,
                   "epochs": options.epochs, "batch": options.batch, "learning_rate": options.learning_rate,
                   "threads": options.threads, "script_sha256": script_hash(), "torch": torch.__version__,
-                  "training_frames": int(training.usable.sum()), "validation_frames": len(validation)}
+                  "training_frames": int(training.usable.sum()), "validation_frames": len(validation),
+                  "rendered_by": renderer_of(options.folder)}
     scored = {}
     for part, name in [(validation, "validation")] + [(test, pathlib.Path(test.name).name) for test in tests]:
         scored[name] = {kind: measure.scores(measure.confidence(of(part), calibration[kind]), part.positive)

@@ -84,9 +84,10 @@ int Evaluate(const Options& options, const DetectorPair& detectors) {
 }
 
 int LookAtPictures(const Options& options, const DetectorPair& detectors) {
+  const std::vector<NamedPicture> pictures = ReadPictures(options.path);
   Json json;
   if (!options.json) fmt::print("{:<40} {:>9} {:>9}\n", "confidence of fire or smoke", "Full", "Quantized");
-  for (const NamedPicture& picture : ReadPictures(options.path)) {
+  for (const NamedPicture& picture : pictures) {
     const Confidences found = Look(detectors, picture.frame);
     json[picture.name] = {{"full", found.full[0]}, {"quantized", found.quantized[0]}};
     if (!options.json)
