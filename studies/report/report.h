@@ -29,14 +29,16 @@ struct Report {
 
 Report MakeReport(const RunResults& results);
 
-// For a terminal of kTerminalWidth characters: heading, result table, generalisation table, verdicts on the claims.
+// For a terminal of kTerminalWidth characters: heading, result table, generalisation table, verdicts on the
+// claims.
 std::string ReportText(const Report& report);
 
 // {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson, "claims": as VerdictJson}.
 nlohmann::ordered_json ReportJson(const Report& report);
 
-// Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv and convergence.csv into `dir`, which it makes if it has to;
-// each file is replaced whole or left as it was. Throws UserError when it cannot.
+// Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv and convergence.csv into
+// `dir`, which it makes if it has to; each file is replaced whole or left as it was. Throws UserError when it
+// cannot.
 void WriteReport(const Report& report, const std::string& dir);
 
 }  // namespace ed3r
