@@ -23,8 +23,8 @@ struct ConvergencePoint {
       0;  // over missions alone: goes with 1 / sqrt(missions), the other one ends at the luck
 };
 
-// 50, 100, 200, ... and all missions of every arm that has 50; energy, MSR, WER, FP, BD, MSCS and mean duration.
-// Missions are taken in mission order, which is balanced over places and networks.
+// 50, 100, 200, ... and all missions of every arm that has 50; energy, MSR, WER, FP, BD, MSCS and mean
+// duration. Missions are taken in mission order, which is balanced over places and networks.
 std::vector<ConvergencePoint> Convergence(std::span<const ArmData> arms);
 
 // Columns stage,arm,metric,missions,networks,value,half_width,half_width_missions.

@@ -1,18 +1,18 @@
 // What a claim says, as data, and the notation that claims.csv writes it in.
 //
-//   claim    := part (";" part)*                        every part must hold; or one quantity (a number is claimed)
-//   part     := list (("<" | ">") list)+                every quantity of one list against every one of the next
-//             | list "~" list                           they differ by less than the claim's tolerance
-//             | "frontier" "(" list ")"                 no arm of the study dominates any of them (paper, Fig. Pareto)
-//             | "dominated" "(" list ")" "by" list      each of the first is dominated by one of the second
+//   claim    := part (";" part)*                      all parts must hold; or one quantity, for a number
+//   part     := list (("<" | ">") list)+              all quantities of one list against all of the next
+//             | list "~" list                         they differ by less than the claim's tolerance
+//             | "frontier" "(" list ")"               no arm of the study dominates any of them
+//             | "dominated" "(" list ")" "by" list    each of the first is dominated by one of the second
 //   list     := sum ("," sum)*
 //   sum      := product (("+" | "-") product)*
 //   product  := atom (("*" | "/") atom)*
 //   atom     := NUMBER | arm | METRIC "(" arm ")" | ("max" | "min" | "mean") "(" list ")" | "(" sum ")"
-//   arm      := NAME                                    one of StudyArms(), of the claim's metric
-//             | NAME ".." DIGIT                         in a list: "ablation-1..4" is all four
+//   arm      := NAME                                  one of StudyArms(), of the claim's metric
+//             | NAME ".." DIGIT                       in a list: "ablation-1..4" is all four
 //
-// "a dominates b": lower mean energy and higher success rate. Arms are names, metrics those of
+// "a dominates b": lower mean energy and higher success rate (Fig. pareto). Arms are names, metrics those of
 // studies/metrics/definitions.h. Pure functions, any thread.
 #pragma once
 
@@ -58,7 +58,8 @@ struct Expression {
 // The paper's nine online arms, and their P85 groups behind them (names as P85Name gives them).
 const std::vector<std::string>& StudyArms();
 
-// `metric` is the one that bare arms stand for; it may be a word that is no metric ("pareto") where none does.
+// `metric` is the one that bare arms stand for; it may be a word that is no metric ("pareto") where there are
+// none.
 // Throws UserError "text:COLUMN: ..." with what is wrong, what is allowed and the nearest known name.
 Expression ParseExpression(std::string_view text, std::string_view metric);
 

@@ -32,7 +32,25 @@ struct Token {
 };
 
 Quantity CellQuantity(std::string arm, std::size_t metric) {
-  return {.kind = Kind::kCell, .number = 0, .cell = {std::move(arm), metric}, .of = {}};
+  Quantity quantity;
+  quantity.kind = Kind::kCell;
+  quantity.cell = {std::move(arm), metric};
+  return quantity;
+}
+
+Quantity Binary(Kind kind, Quantity left, Quantity right) {
+  Quantity quantity;
+  quantity.kind = kind;
+  quantity.of.push_back(std::move(left));
+  quantity.of.push_back(std::move(right));
+  return quantity;
+}
+
+Quantity OfList(Kind kind, List list) {
+  Quantity quantity;
+  quantity.kind = kind;
+  quantity.of = std::move(list);
+  return quantity;
 }
 
 Formula Less(Quantity left, Quantity right) {
@@ -260,7 +278,8 @@ class Parser {
     while (Is("+") || Is("-")) {
       const Kind kind = Is("+") ? Kind::kAdd : Kind::kSubtract;
       Next();
-      sum = {.kind = kind, .number = 0, .cell = {}, .of = {std::move(sum), ParseProduct()}};
+      Quantity right = ParseProduct();
+      sum = Binary(kind, std::move(sum), std::move(right));
     }
     return sum;
   }
@@ -270,7 +289,8 @@ class Parser {
     while (Is("*") || Is("/")) {
       const Kind kind = Is("*") ? Kind::kMultiply : Kind::kDivide;
       Next();
-      product = {.kind = kind, .number = 0, .cell = {}, .of = {std::move(product), ParseAtom()}};
+      Quantity right = ParseAtom();
+      product = Binary(kind, std::move(product), std::move(right));
     }
     return product;
   }
@@ -299,7 +319,7 @@ class Parser {
     constexpr std::pair<std::string_view, Kind> kFunctions[] = {
         {"max", Kind::kMax}, {"min", Kind::kMin}, {"mean", Kind::kMean}};
     for (const auto& [function, kind] : kFunctions)
-      if (name.text == function) return {.kind = kind, .number = 0, .cell = {}, .of = ParseList()};
+      if (name.text == function) return OfList(kind, ParseList());
     const std::size_t metric = FindMetric(name.text, name.column);
     const std::vector<std::string> arms = ParseArmOrRange();
     if (arms.size() != 1) Refuse("one arm");

@@ -1,4 +1,5 @@
-// The cells that claims are made of, for one run: their values, and what they would have been in each resample.
+// The cells that claims are made of, for one run: their values, and what they would have been in each
+// resample.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +32,8 @@ class ResampledArms {
   const Resampled& At(const Cell& cell) const { return cells_.at(cell); }
   Resampled Of(const Quantity& quantity) const;
 
-  // As ComputeMetrics gives it, for the arms themselves; P85 groups have none (their interval must know that the
-  // group is chosen by what happened: use At).
+  // As ComputeMetrics gives it, for the arms themselves; P85 groups have none (their interval must know that
+  // the group is chosen by what happened: use At).
   const MetricValue& TableValue(const Cell& cell) const;
 
   int networks() const { return networks_; }                     // 1 where none or one flew

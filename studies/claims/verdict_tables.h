@@ -8,13 +8,14 @@
 
 namespace ed3r {
 
-// A summary (how many of each verdict), a table of what was judged, and one line for each reason why claims were
-// not measured; lines of at most kTerminalWidth characters. Empty where the run has none of the paper's arms.
+// A summary (how many of each verdict), a table of what was judged, and one line for each reason why claims
+// were not measured; lines of at most kTerminalWidth characters. Empty where the run has none of the paper's
+// arms.
 std::string VerdictText(const ClaimStudy& study);
 
-// [{"id", "where", "strategy", "metric", "kind", "claim", "paper", "ours", "lo", "hi", "p", "p_holm", "verdict",
-// "why", "by_network": {"counts": {VERDICT: n}, "verdicts": [..], "ours": [..]}}]; null is "none". Empty where
-// VerdictText is.
+// [{"id", "where", "strategy", "metric", "kind", "claim", "paper", "ours", "lo", "hi", "p", "p_holm",
+// "verdict", "why", "by_network": {"counts": {VERDICT: n}, "verdicts": [..], "ours": [..]}}]; null is "none".
+// Empty where VerdictText is.
 nlohmann::ordered_json VerdictJson(const ClaimStudy& study);
 
 // The same as a table; the last columns are how many networks alone give each verdict. Only the heading where

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kLevel = 0.05;
 
-// An interval that reaches further than this would hold almost any value: half of the paper's, for percentages half
-// of what it or its complement is (a success rate is a failure rate), but 5 points at least.
+// An interval that reaches further than this would hold almost any value: half of the paper's, for
+// percentages half of what it or its complement is (a success rate is a failure rate), but 5 points at least.
 double CoarseReach(const Claim& claim, double paper) {
   constexpr double kShare = 0.5, kPoints = 5;
   if (claim.unit != "%") return kShare * std::abs(paper);

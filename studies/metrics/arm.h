@@ -28,11 +28,12 @@ struct KnownUnseen {
 KnownUnseen Split(const ArmData& arm, SplitBy by);
 
 // The `percent` of the arm's missions (0..100, rounded to the nearest mission, half up) that took longest; of
-// equally long ones those that come first. Order, stage and name kept; failed and missing missions are not in it.
+// equally long ones those that come first. Order, stage and name kept; failed and missing missions are not in
+// it.
 ArmData LongestShare(const ArmData& arm, int percent);
 
-// The paper's P85 group: the 15 % longest missions (R30; 128 of 850), under the paper's name for it ("ed3r-p85" for
-// ed3r-75, the threshold that it goes on with, "rbs-p85" for rbs).
+// The paper's P85 group: the 15 % longest missions (R30; 128 of 850), under the paper's name for it
+// ("ed3r-p85" for ed3r-75, the threshold that it goes on with, "rbs-p85" for rbs).
 inline constexpr int kP85Percent = 15;
 ArmData P85Group(const ArmData& arm);
 std::string P85Name(std::string_view arm);

@@ -36,7 +36,8 @@ struct Report {
 
 Report MakeReport(const RunResults& results);
 
-// For a terminal of kTerminalWidth characters: heading, result table, generalisation table, verdicts on the claims.
+// For a terminal of kTerminalWidth characters: heading, result table, generalisation table, verdicts on the
+// claims.
 std::string ReportText(const Report& report);
 
 // {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson, "claims": as VerdictJson}.

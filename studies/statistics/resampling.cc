@@ -1,3 +1,20 @@
+// Coverage of the nominal 95 % interval of a paired difference (tests/claims/coverage_test.cc, PrintsTheTable;
+// 1,000 synthetic studies each, 850 missions of skewed energy, mean 31 kJ; luck: standard deviation of a network's
+// factor on its arm's energies; standard error of a share 0.7 points):
+//
+//   networks  luck   covered, %   missions alone would cover, %   half-width, kJ
+//          2   0.0        99.3                             95.3            11.5
+//          2   0.05       98.2                             71.7            20.3
+//          2   0.2        95.8                             25.7            66.3
+//          3   0.0        98.4                             93.6             4.3
+//          3   0.05       96.6                             77.2             6.5
+//          3   0.2        94.4                             33.3            19.8
+//          5   0.0        98.4                             94.8             3.0
+//          5   0.05       96.4                             84.8             3.9
+//          5   0.2        94.5                             39.8            10.7
+//         10   0.0        96.0                             94.1             2.5
+//         10   0.05       95.2                             88.4             2.8
+//         10   0.2         94.5                             50.9             6.4
 #include "studies/statistics/resampling.h"
 
 #include <algorithm>

@@ -13,9 +13,8 @@
 // With few networks the second is too narrow twice over: it spreads by the divisor G instead of G - 1, and
 // takes the spread of five numbers for known. Its standard deviation is scaled by sqrt(G / (G - 1)) and used
 // with Student's t of G - 1 degrees. And five networks can agree by accident, so an interval is never narrower
-// than that over missions alone. Coverage of nominal 95 %, 4,000 synthetic studies each of a paired difference of
-// skewed mission energies, 5 networks of 170 missions (tests/claims/coverage_test.cc has a small version):
-// see the table in resampling.cc.
+// than that over missions alone. This holds its level whatever the luck of training, and errs on the wide side
+// where there is none; resampling.cc has the measured coverage.
 //
 // Draws come from Stream(kBootstrap): the same data give the same numbers on every machine, in any order.
 #pragma once

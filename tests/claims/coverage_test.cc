@@ -1,7 +1,9 @@
-// How often the two-level interval of a paired difference holds the truth, and how often a test at 5 % is wrong.
+// How often the two-level interval of a paired difference holds the truth, and how often a test at 5 % is
+// wrong.
 //
-// Synthetic studies: missions' energies are log-normal (a hard scenario is hard for both arms), every network moves
-// its arm's energies by a factor of its own, networks are shared by index but lucky or unlucky in each arm separately.
+// Synthetic studies: missions' energies are log-normal (a hard scenario is hard for both arms), every network
+// moves its arm's energies by a factor of its own, networks are shared by index but lucky or unlucky in each
+// arm separately.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -99,7 +101,7 @@ TEST(CoverageTest, ErrsOnTheWideSideWithoutLuck) {
   EXPECT_LE(outcome.wrong, 0.07);
 }
 
-// Prints the table of studies/statistics/resampling.cc; about ten minutes:
+// Prints the table of studies/statistics/resampling.cc; about two minutes:
 //   test_claims --gtest_also_run_disabled_tests --gtest_filter='*PrintsTheTable'
 TEST(CoverageTest, DISABLED_PrintsTheTable) {
   for (const int networks : {2, 3, 5, 10})
@@ -107,8 +109,8 @@ TEST(CoverageTest, DISABLED_PrintsTheTable) {
       const Coverage o = Fly({.networks = networks,
                               .missions_each = 850 / networks,
                               .luck = luck,
-                              .studies = 2000,
-                              .resamples = 500});
+                              .studies = 1000,
+                              .resamples = 300});
       std::printf("%8d %6.2f %9.1f %9.1f %9.1f %8.2f\n", networks, luck, 100 * o.covered,
                   100 * o.covered_by_missions, 100 * o.wrong, o.half_width);
     }

@@ -1,5 +1,5 @@
-// The claims as data against the paper's own numbers: an expression that was written down wrongly would not hold
-// where the paper's numbers are put in.
+// The claims as data against the paper's own numbers: an expression that was written down wrongly would not
+// hold where the paper's numbers are put in.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -157,7 +157,8 @@ TEST(VerdictsTest, Comparisons) {
 }
 
 TEST(VerdictsTest, PairingMakesSmallDifferencesCertain) {
-  // Hardness varies by a third between missions, an arm's own noise is small: 1 % of difference shows only in pairs.
+  // Hardness varies by a third between missions, an arm's own noise is small: 1 % of difference shows only in
+  // pairs.
   const SyntheticDesign quiet{.missions = 280, .networks = 1, .places = 28, .own_noise = 0.01};
   const ArmData first = MakeArm({"ed3r-75", 20}, quiet);
   ArmData second = MakeArm({"ecd2r", 20.2}, quiet);
