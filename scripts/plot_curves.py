@@ -88,34 +88,38 @@ def place_labels(axis, labels, at, marks):
         taken.append(box)
         far = abs(dy) > 22
         axis.annotate(text, point, xytext=(dx, dy), textcoords="offset points", ha=side, va=level[np.sign(dy)], color=colour,
-                      fontweight="bold", fontsize=size, zorder=8, arrowprops=dict(arrowstyle="-", color=colour, lw=0.6) if far else None)
+                      fontweight="bold", fontsize=size, zorder=8,
+                      arrowprops=dict(arrowstyle="-", color=colour, lw=0.6) if far else None)
 
 
 def draw_convergence(run, figure):
     arms = run.arms(figure["arms"])
-    canvas, axes = plt.subplots(1, 2, figsize=(style.WIDTH_IN, 4.2), sharex=True)
-    for axis, metric, title in ((axes[0], "total_energy_kj", "mean energy: 95 % interval, ± [kJ]"),
-                                (axes[1], "msr_pct", "success rate: 95 % interval, ± [points]")):
-        ends, level = [], []
+    canvas, axes = plt.subplots(1, 2, figsize=(style.WIDTH_IN, 4.3), sharex=True)
+    panels = (("total_energy_kj", "mean energy: 95 % interval, ± [kJ]"), ("msr_pct", "success rate: 95 % interval, ± [points]"))
+    for axis, (metric, title) in zip(axes, panels):
+        level = []
         for arm in arms:
-            n = np.array(arm["convergence"]["missions"], dtype=float)
-            width = np.array([np.nan if w is None else w for w in arm["convergence"][metric]], dtype=float)
-            if not np.isfinite(width).any():
-                continue
-            axis.plot(n, width, color=run.colour(arm), lw=1.6)
-            ends.append((width[-1], n[-1], arm))
-            level.append(np.nanmedian(width * np.sqrt(n)))
+            curve = arm["convergence"][metric]
+            n = np.array(curve["missions"], dtype=float)
+            alone = np.array(curve["half_width_missions"], dtype=float)
+            axis.plot(n, np.array(curve["half_width"], dtype=float), color=run.colour(arm), lw=1.7)
+            axis.plot(n, alone, color=run.colour(arm), lw=1.0, ls="--")
+            level.append(np.nanmedian(alone * np.sqrt(n)))
         axis.set(xscale="log", yscale="log", xlabel="missions of an arm")
         axis.set_title(title)
-        if level:
-            n = np.array(axis.get_xlim())
-            axis.plot(n, np.median(level) / np.sqrt(n), color=style.FAINT, lw=5, alpha=0.18, zorder=1, scalex=False, scaley=False)
+        n = np.array(axis.get_xlim())
+        axis.plot(n, np.median(level) / np.sqrt(n), color=style.FAINT, lw=5, alpha=0.18, zorder=1, scalex=False, scaley=False)
         plain_ticks(axis)
         axis.grid(True, which="major")
+    handles = [Line2D([], [], color=style.INK, lw=1.7, label="with the luck of training"),
+               Line2D([], [], color=style.INK, lw=1.0, ls="--", label="over missions alone"),
+               Line2D([], [], color=style.FAINT, lw=5, alpha=0.18, label="$1/\\sqrt{n}$")]
+    canvas.legend(handles=handles, loc="lower center", ncol=3, bbox_to_anchor=(0.46, -0.05))
     canvas.tight_layout(w_pad=8.0, rect=(0, 0, 0.92, 1))
-    for axis, metric in zip(axes, ("total_energy_kj", "msr_pct")):
-        label_ends(axis, [(arm["convergence"][metric][-1], arm["convergence"]["missions"][-1], arm) for arm in arms
-                          if arm["convergence"][metric] and arm["convergence"][metric][-1] is not None], run)
+    for axis, (metric, _) in zip(axes, panels):
+        curves = [(arm["convergence"][metric], arm) for arm in arms]
+        label_ends(axis, [(curve["half_width"][-1], curve["missions"][-1], arm) for curve, arm in curves
+                          if curve["half_width"][-1] is not None], run)
     return canvas
 
 

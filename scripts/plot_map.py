@@ -25,7 +25,8 @@ def draw_map(run, figure):
         draw_path(axis, mission, colours)
         west, south, side = window(mission, world)
         axis.set(xlim=(west, west + side), ylim=(south, south + side), aspect="equal", xlabel="east [m]")
-        axis.set_title(f"{OUTCOMES[mission['outcome']]}\n{labels[mission['stage'], mission['arm']]}, mission {mission['mission']}\n"
+        axis.set_title(f"{OUTCOMES[mission['outcome']]}\n"
+                       f"{labels[mission['stage'], mission['arm']]}, mission {mission['mission']}\n"
                        f"{mission['duration_min']:.1f} min, {mission['energy_kj']:.1f} kJ, {len(mission['x_m']) - 1} timesteps",
                        fontsize=9)
     axes[0, 0].set_ylabel("north [m]")

@@ -70,7 +70,7 @@ def eta_text(arm):
 
 
 def set_limits(axis, arms, name, metric):
-    """The range of the missions and of the paper's values, not of the intervals, which may be anything where few networks flew."""
+    """The range of missions and of the paper's values, not of intervals, which may be anything where few networks flew."""
     papers = [arm["metrics"][metric]["paper"] for arm in arms]
     values = np.concatenate([column(arm, name)[shown_missions(arm)] for arm in arms] + [[p for p in papers if p is not None]])
     low, high = np.nanmin(values), np.nanmax(values)

@@ -90,8 +90,8 @@ def draw_sites(run, figure):
     arm_rows(axis, arms, run)
     names = [place_["name"] for place_ in run.data["world"]["sites"]] if run.data["world"] else []
     axis.set_xticks([place[site] for site in order])
-    axis.set_xticklabels([names[site] if site < len(names) else str(site + 1) for site in order], rotation=40, ha="right", rotation_mode="anchor",
-                         fontsize=8)
+    axis.set_xticklabels([names[site] if site < len(names) else str(site + 1) for site in order], rotation=40, ha="right",
+                         rotation_mode="anchor", fontsize=8)
     axis.tick_params(axis="x", length=0)
     for spine in axis.spines.values():
         spine.set_visible(False)

@@ -49,7 +49,7 @@ Json ArmJson(const FigureInputs& inputs, std::size_t a, const std::string& key, 
   json["sites"] = SiteSuccess(arm);
   json["known_sites"] = PooledSuccess(arm, true);
   json["unseen_sites"] = PooledSuccess(arm, false);
-  json["convergence"] = Convergence(arm);
+  json["convergence"] = ConvergenceJson(arm, Convergence(inputs.arms.subspan(a, 1)));
   return json;
 }
 

@@ -13,8 +13,8 @@
 //     per_mission     columns of equal length, in mission order: see `units`; null is "none"
 //     sites           list: {site, known, missions, success_pct, lo, hi, false_positive_pct, depleted_pct}
 //     known_sites, unseen_sites    the same, pooled; null without missions
-//     convergence     {missions: [n...], total_energy_kj: [...], msr_pct: [...]}: half widths of the 95 % intervals that
-//                     the first n missions give; null where they give none
+//     convergence     METRIC: {missions: [n...], half_width: [...], half_width_missions: [...]}: of the 95 % interval
+//                     that the first n missions give, with and without the luck of training (studies/claims/convergence.h)
 //   figures           list: {id, kind, title, caption, arms: [key...], warmups: [key...]}: see figure_list.h
 //   missions_shown    list: {arm, mission, outcome, site, base_station, duration_min, energy_kj,
 //                     x_m, y_m, z_m, scs_pct}: positions after each timestep, the start first (its SCS is null)

@@ -171,18 +171,18 @@ void AddRunFigures(std::span<const ArmData> arms, const Indices& drawn, std::siz
          {}});
   Indices long_enough;
   for (const std::size_t a : drawn)
-    if (arms[a].missions.size() >= 2 * kConvergenceStart) long_enough.push_back(a);
+    if (arms[a].missions.size() >= kConvergenceStart) long_enough.push_back(a);
   if (!long_enough.empty())
-    figures.push_back(
-        {"convergence",
-         "convergence",
-         "How sure after how many missions",
-         "Half the width of the 95 % interval of mean energy and of the success rate, computed from the "
-         "first n missions of each arm, once all of its networks have flown. The grey line falls as one over "
-         "the square root of n; where the "
-         "curves stay above it, the luck of training does not average out with more missions.",
-         long_enough,
-         {}});
+    figures.push_back({"convergence",
+                       "convergence",
+                       "How sure after how many missions",
+                       "Half the width of the 95 % interval of mean energy and of the success rate, computed "
+                       "from the first n missions "
+                       "of each arm. Dashed: over missions alone, which falls as one over the square root of "
+                       "n (grey). Solid: with the "
+                       "luck of training, which more missions of the same networks do not average out.",
+                       long_enough,
+                       {}});
 }
 
 }  // namespace

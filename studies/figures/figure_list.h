@@ -29,8 +29,8 @@ std::vector<FigureSpec> ListFigures(std::span<const ArmData> arms, std::span<con
 inline constexpr std::size_t kGroupArms = 9;
 inline constexpr std::size_t kMostGroups = 4;
 
-// The smallest sample of an arm whose convergence is drawn.
-inline constexpr std::size_t kConvergenceStart = 10;
+// Missions of an arm from which its convergence is drawn: two points of the curve at least.
+inline constexpr std::size_t kConvergenceStart = 100;
 
 // The plan of an arm, or null.
 const ArmPlan* PlanOf(std::span<const ArmPlan> plans, const ArmData& arm);

@@ -4,11 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
-#include <span>
 
-#include "studies/figures/figure_list.h"
-#include "studies/metrics/metrics.h"
 #include "studies/statistics/intervals.h"
 
 namespace ed3r {
@@ -94,20 +90,6 @@ struct Outcomes {
   }
 };
 
-// kConvergenceStart, then each 1.3 times the one before, up to all missions.
-std::vector<std::size_t> SampleSizes(std::size_t all) {
-  std::vector<std::size_t> sizes;
-  for (std::size_t n = kConvergenceStart; n < all; n = (n * 13 + 9) / 10) sizes.push_back(n);
-  if (all >= kConvergenceStart) sizes.push_back(all);
-  return sizes;
-}
-
-std::set<std::int64_t> NetworksOf(std::span<const MissionRecord> missions) {
-  std::set<std::int64_t> networks;
-  for (const MissionRecord& mission : missions) networks.insert(mission.network);
-  return networks;
-}
-
 }  // namespace
 
 Json Rounded(double value, int decimals) {
@@ -159,23 +141,16 @@ Json PooledSuccess(const ArmData& arm, bool known) {
   return outcomes.missions == 0 ? Json(nullptr) : outcomes.Shares();
 }
 
-Json Convergence(const ArmData& arm) {
-  Json convergence = {
-      {"missions", Json::array()}, {"total_energy_kj", Json::array()}, {"msr_pct", Json::array()}};
-  const std::size_t networks = NetworksOf(arm.missions).size();
-  for (const std::size_t n : SampleSizes(arm.missions.size())) {
-    // A sample that one network has not entered yet knows less than it seems to.
-    if (NetworksOf({arm.missions.data(), n}).size() < networks) continue;
-    ArmData first{.stage = arm.stage, .name = arm.name, .missions = {}};
-    first.missions.assign(arm.missions.begin(), arm.missions.begin() + static_cast<std::ptrdiff_t>(n));
-    const ArmMetrics metrics = ComputeMetrics(first);
-    convergence["missions"].push_back(n);
-    for (const char* name : {"total_energy_kj", "msr_pct"}) {
-      const MetricValue& value = metrics[name];
-      convergence[name].push_back(Rounded(0.5 * (value.hi - value.lo)));
-    }
+Json ConvergenceJson(const ArmData& arm, std::span<const ConvergencePoint> points) {
+  Json curves = Json::object();
+  for (const ConvergencePoint& point : points) {
+    if (point.stage != arm.stage || point.arm != arm.name) continue;
+    Json& curve = curves[std::string(point.metric)];
+    curve["missions"].push_back(point.missions);
+    curve["half_width"].push_back(Rounded(point.half_width));
+    curve["half_width_missions"].push_back(Rounded(point.half_width_missions));
   }
-  return convergence;
+  return curves;
 }
 
 }  // namespace ed3r

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "studies/claims/convergence.h"
 #include "studies/metrics/arm.h"
 
 namespace ed3r {
@@ -16,7 +18,8 @@ nlohmann::ordered_json SiteSuccess(const ArmData& arm);
 // The missions of all known (or all unseen) sites as one; null without any.
 nlohmann::ordered_json PooledSuccess(const ArmData& arm, bool known);
 
-nlohmann::ordered_json Convergence(const ArmData& arm);
+// The points of this arm.
+nlohmann::ordered_json ConvergenceJson(const ArmData& arm, std::span<const ConvergencePoint> points);
 
 // `value` with this many decimals; null for NaN.
 nlohmann::ordered_json Rounded(double value, int decimals = 4);

@@ -155,19 +155,21 @@ TEST(FigureDataTest, SitesAddUpToTheirPools) {
   EXPECT_TRUE(PooledSuccess(arm, false).is_null());
 }
 
-TEST(FigureDataTest, ConvergenceEndsAtTheTablesInterval) {
+TEST(FigureDataTest, ConvergenceIsOfItsArm) {
+  const std::vector<ConvergencePoint> points = {{"online", "rbs", "msr_pct", 50, 0, 70, 12.5, 12.5},
+                                                {"online", "ecd2r", "msr_pct", 50, 0, 70, 9, 9},
+                                                {"online", "rbs", "msr_pct", 100, 2, 70, 11, 8.25}};
+  EXPECT_EQ(ConvergenceJson(Arm("rbs"), points).dump(),
+            R"({"msr_pct":{"missions":[50,100],"half_width":[12.5,11],"half_width_missions":[12.5,8.25]}})");
+  EXPECT_TRUE(ConvergenceJson(Arm("mine"), points).empty());
+}
+
+TEST(FigureListTest, ConvergenceNeedsMissions) {
   ArmData arm = Arm("rbs");
-  for (int i = 0; i < 4; ++i)
-    arm.missions.insert(arm.missions.end(), arm.missions.begin(), arm.missions.begin() + 5);
-  arm.missions.resize(25);
-  const auto curve = Convergence(arm);
-  EXPECT_EQ(curve.at("missions").dump(), "[10,13,17,23,25]");
-  const MetricValue energy = ComputeMetrics(arm)["total_energy_kj"];
-  EXPECT_NEAR(curve.at("total_energy_kj").back().get<double>(), 0.5 * (energy.hi - energy.lo), 1e-4);
-  for (std::size_t i = 0; i < arm.missions.size(); ++i) arm.missions[i].network = i < 20 ? 0 : 1;
-  EXPECT_EQ(Convergence(arm).at("missions").dump(), "[23,25]");  // from where both networks are in
-  arm.missions.resize(9);
-  EXPECT_TRUE(Convergence(arm).at("missions").empty());
+  while (arm.missions.size() < kConvergenceStart) arm.missions.push_back(arm.missions[0]);
+  EXPECT_EQ(Ids(ListFigures(std::vector{arm}, {}, 0)).back(), "convergence");
+  arm.missions.pop_back();
+  EXPECT_EQ(Ids(ListFigures(std::vector{arm}, {}, 0)).back(), "sites");
 }
 
 TEST(FigureDataTest, ShownMissionsCarryTheirPathAndWorld) {
