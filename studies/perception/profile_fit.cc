@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "engine/core/check.h"
@@ -134,8 +135,14 @@ int CountSignals(std::span<const PeriodLook> looks, bool quantized) {
   }));
 }
 
-void Solve(std::span<const PeriodLook> looks, double threshold, Weights& weights, Response& full,
-           Response& quantized) {
+struct Solution {
+  Weights weights;
+  Response full, quantized;
+  double cost = std::numeric_limits<double>::infinity();
+};
+
+void Solve(std::span<const PeriodLook> looks, double threshold, Solution& solution) {
+  auto& [weights, full, quantized, cost] = solution;
   ceres::Problem problem;
   for (const PeriodLook& look : looks) {
     if (look.fire_share + look.smoke_share + look.distractor_share <= 0.0) continue;
@@ -165,6 +172,25 @@ void Solve(std::span<const PeriodLook> looks, double threshold, Weights& weights
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   ED3R_CHECK(summary.IsSolutionUsable(), summary.message);
+  cost = summary.final_cost;
+}
+
+// A steep and a flat response can both be local minima: several starts, the least cost wins.
+Solution BestOfStarts(std::span<const PeriodLook> looks, double threshold, const PerceptionConfig& start) {
+  Solution best;
+  for (const double slope : {3.0, 8.0}) {
+    for (const double sigma : {0.7, 2.0}) {
+      Solution solution{WeightsOf(start), ResponseOf(start.full, start.fire_weight),
+                        ResponseOf(start.quantized, start.fire_weight)};
+      for (Response* response : {&solution.full, &solution.quantized}) {
+        (*response)[1] = slope;
+        (*response)[3] = std::log(sigma);
+      }
+      Solve(looks, threshold, solution);
+      if (solution.cost < best.cost) best = solution;
+    }
+  }
+  return best;
 }
 
 ResponseConfig ConfigOf(const Response& r, double frame_sigma) {
@@ -183,10 +209,7 @@ ProfileFit FitProfile(std::span<const PeriodLook> looks, const PerceptionConfig&
                       "model; needed: {}",
                       count, quantized ? "Quantized" : "Full", kMinPeriods));
   const double threshold = start.frame_threshold;
-  Weights weights = WeightsOf(start);
-  Response full = ResponseOf(start.full, start.fire_weight),
-           quantized = ResponseOf(start.quantized, start.fire_weight);
-  Solve(looks, threshold, weights, full, quantized);
+  const auto [weights, full, quantized, cost] = BestOfStarts(looks, threshold, start);
 
   ProfileFit fit;
   fit.smoke_weight = std::exp(weights[0]);
