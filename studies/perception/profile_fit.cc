@@ -15,7 +15,7 @@ namespace ed3r {
 namespace {
 
 constexpr int kMinPeriods = 50;
-constexpr int kNodes = 48;         // of Simpson's rule
+constexpr int kNodes = 32;         // of Simpson's rule
 constexpr double kLogitSpan = 12;  // beyond it a logistic curve is flat and a normal density is nothing
 
 // Parameters: shared (ln w_smoke, ln w_distractor), and for each model (ln half_signal, slope, ceiling, ln sigma).

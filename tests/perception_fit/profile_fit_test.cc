@@ -50,7 +50,7 @@ std::vector<PeriodLook> Looks(const PerceptionConfig& truth, int count) {
 
 TEST(ProfileFitTest, KnownParametersComeBack) {
   const PerceptionConfig truth = Truth();
-  const std::vector<PeriodLook> looks = Looks(truth, 3000);
+  const std::vector<PeriodLook> looks = Looks(truth, 6000);
   const ProfileFit fit = FitProfile(looks, PerceptionConfig());
   EXPECT_NEAR(std::log(fit.smoke_weight / truth.smoke_weight), 0.0, 0.15);
   EXPECT_NEAR(std::log(fit.distractor_weight / truth.distractor_weight), 0.0, 0.2);
@@ -61,7 +61,7 @@ TEST(ProfileFitTest, KnownParametersComeBack) {
     EXPECT_NEAR(fitted.response.ceiling, real.ceiling, 0.02);
     EXPECT_NEAR(fitted.response.frame_sigma, real.frame_sigma, 0.15 * real.frame_sigma);
     EXPECT_GT(fitted.variance_explained, 0.8);
-    EXPECT_EQ(fitted.periods, 1500);
+    EXPECT_EQ(fitted.periods, 3000);
   }
   EXPECT_EQ(fit.same_truth_pct, 100.0);
 }
