@@ -8,6 +8,7 @@
 #include "engine/app/commands.h"
 #include "engine/app/perception_looks.h"
 #include "engine/core/check.h"
+#include "studies/figures/draw.h"
 #include "studies/fit/fit.h"
 #include "studies/fit/report.h"
 #include "studies/fit/self_check.h"
@@ -22,6 +23,7 @@ struct Options {
   std::vector<std::string> set;
   std::string out;
   bool json = false;
+  bool no_figures = false;
 };
 
 int SelfCheck(const Options& options) {
@@ -66,12 +68,17 @@ int Fit(Options options) {
     options.fit.robot.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
   }
   const FitReport report = RunFit(options.fit);
-  if (!options.out.empty()) WriteFitOutputs(report, options.out);
+  DrawResult drawn;
+  if (!options.out.empty()) {
+    WriteFitOutputs(report, options.out);
+    if (!options.no_figures) drawn = DrawFigures(options.out, "plot_fit.py");
+  }
   if (options.json)
     fmt::print("{}\n", ToJson(report).dump(2));
   else
     PrintReport(report, std::cout);
-  return kDone;
+  if (drawn.outcome != Drawing::kDone) fmt::print(stderr, "no figures: {}\n", drawn.message);
+  return drawn.outcome == Drawing::kFailed ? kFailedInside : kDone;
 }
 
 }  // namespace
@@ -104,6 +111,7 @@ Command AddFit(CLI::App& program) {
           ->excludes("LOG");
   parser->add_option("--model", options->self_check.model, "Model of the synthetic logs; default momentum")
       ->needs(check);
+  parser->add_flag("--no-figures", options->no_figures, "With --out: draw nothing (no Python)");
   parser->add_flag("--json", options->json, "Print JSON");
   return {parser, [options] { return Fit(*options); }};
 }

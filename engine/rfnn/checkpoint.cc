@@ -1,7 +1,7 @@
 #include "engine/rfnn/checkpoint.h"
 
-#include "engine/rfnn/curve_bytes.h"
 #include "engine/core/sealed_file.h"
+#include "engine/rfnn/curve_bytes.h"
 
 namespace ed3r {
 namespace {

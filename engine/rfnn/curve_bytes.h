@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "engine/rfnn/report.h"
 #include "engine/core/sealed_file.h"
+#include "engine/rfnn/report.h"
 
 namespace ed3r {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/rfnn/curve_bytes.h"
 #include "engine/core/sealed_file.h"
+#include "engine/rfnn/curve_bytes.h"
 
 namespace ed3r {
 namespace {

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kNoMatplotlib = 3;  // plot.py's exit status for it
+constexpr int kNoMatplotlib = 3;  // the scripts' exit status for it
 
 std::string Environment(const char* name, const char* otherwise) {
   const char* value = std::getenv(name);
@@ -56,9 +56,9 @@ int RunProgram(const std::vector<std::string>& command, const fs::path& errors) 
 
 }  // namespace
 
-DrawResult DrawFigures(const std::string& folder) {
+DrawResult DrawFigures(const std::string& folder, const std::string& script_name) {
   const std::string python = Environment("ED3R_PYTHON", "/usr/bin/python3");
-  const fs::path script = fs::path(Environment("ED3R_SCRIPTS", ED3R_SCRIPTS_DIR)) / "plot.py";
+  const fs::path script = fs::path(Environment("ED3R_SCRIPTS", ED3R_SCRIPTS_DIR)) / script_name;
   if (!fs::exists(script))
     return {Drawing::kUnavailable,
             fmt::format("{} is not there; set ED3R_SCRIPTS to its folder", script.string())};

@@ -1,4 +1,4 @@
-// Draws figures by calling scripts/plot.py.
+// Draws figures by calling a script of scripts/.
 #pragma once
 
 #include <string>
@@ -16,9 +16,9 @@ struct DrawResult {
   std::string message;  // one line where it is not done
 };
 
-// Turns FOLDER/data.json into pictures beside it. The interpreter is $ED3R_PYTHON, else /usr/bin/python3 (whose
+// Lets a script ("plot.py": FOLDER/data.json, "plot_fit.py": FOLDER/fit.json) turn a folder's data into pictures beside it. The interpreter is $ED3R_PYTHON, else /usr/bin/python3 (whose
 // packages Debian installs); the script lies in $ED3R_SCRIPTS, else in the scripts/ of the source tree that this program
 // was built from. Takes some seconds; one call at a time per folder.
-DrawResult DrawFigures(const std::string& folder);
+DrawResult DrawFigures(const std::string& folder, const std::string& script = "plot.py");
 
 }  // namespace ed3r

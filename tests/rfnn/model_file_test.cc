@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "engine/core/check.h"
-#include "engine/core/sha256.h"
 #include "engine/core/sealed_file.h"
+#include "engine/core/sha256.h"
 #include "tests/rfnn/toys.h"
 
 namespace ed3r {

@@ -125,7 +125,8 @@ constexpr Broken kBroken[] = {
     {"unknown_axis_form.yaml", "unknown_axis_form.yaml:4:20: rang: unknown key; did you mean range?"},
     {"unknown_key.yaml", "unknown_key.yaml:2:1: mision: unknown key; did you mean missions?"},
     {"unknown_key_far.yaml",
-     "unknown_key_far.yaml:3:1: colour: unknown key; a sweep file has name, base, missions, precision, seed, set, "
+     "unknown_key_far.yaml:3:1: colour: unknown key; a sweep file has name, base, missions, precision, seed, "
+     "set, "
      "sweep, where, stages"},
     {"unknown_parameter.yaml",
      "unknown_parameter.yaml:4:3: robot.mas_kg: unknown key; did you mean robot.mass_kg?"},
