@@ -1,5 +1,6 @@
 #include "studies/report/provenance.h"
 
+#include <filesystem>
 #include <sstream>
 
 #include "engine/store/digest.h"
@@ -13,9 +14,17 @@ std::string Note(const std::map<std::string, std::string>& notes, const std::str
   return found == notes.end() ? "" : found->second;
 }
 
+// The sweep file as it is called from here, where it lies below the present folder.
+std::string SweepFileOf(const std::map<std::string, std::string>& notes) {
+  const std::string file = Note(notes, "sweep file");
+  const std::string here =
+      std::filesystem::path(file).lexically_proximate(std::filesystem::current_path()).string();
+  return file.empty() || here.starts_with("..") ? file : here;
+}
+
 std::string CommandOf(const std::map<std::string, std::string>& notes, const std::string& dir) {
   if (!notes.contains("sweep file")) return "";
-  std::string command = "ed3r run " + notes.at("sweep file");
+  std::string command = "ed3r run " + SweepFileOf(notes);
   for (const char* option : {"--seed", "--missions"})
     if (const std::string value = Note(notes, std::string("sweep ") + option); !value.empty())
       command += std::string(" ") + option + " " + value;
@@ -38,7 +47,7 @@ Provenance ReadProvenance(const std::string& dir) {
     provenance.sessions.push_back({session.host, session.begun_utc, session.ended_utc, session.notes});
   if (!provenance.sessions.empty()) {
     const std::map<std::string, std::string>& notes = provenance.sessions.back().notes;
-    provenance.sweep_file = Note(notes, "sweep file");
+    provenance.sweep_file = SweepFileOf(notes);
     provenance.command = CommandOf(notes, dir);
     provenance.commit = Note(notes, "commit");
   }
