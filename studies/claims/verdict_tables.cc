@@ -105,9 +105,12 @@ std::string Unmeasured(const ClaimStudy& study) {
       const bool absent = judged.all.why.starts_with("not in this run");
       by_reason[absent ? "arms that are not in this run" : judged.all.why].push_back(judged.claim.id);
     }
+  constexpr std::size_t kListed = 40;  // more say nothing that verdicts.csv does not say better
   std::string text;
   for (const auto& [reason, ids] : by_reason)
-    text += Wrap(fmt::format("{}: {}", reason, fmt::join(ids, " ")), "Not measured, ", kTerminalWidth);
+    text += ids.size() > kListed
+                ? Wrap(fmt::format("{}: {} claims", reason, ids.size()), "Not measured, ", kTerminalWidth)
+                : Wrap(fmt::format("{}: {}", reason, fmt::join(ids, " ")), "Not measured, ", kTerminalWidth);
   return text;
 }
 
