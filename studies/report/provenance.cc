@@ -59,4 +59,15 @@ Provenance ReadProvenance(const std::string& dir) {
   return provenance;
 }
 
+nlohmann::ordered_json ManifestJson(const Provenance& p) {
+  nlohmann::ordered_json machine = nlohmann::ordered_json::object();
+  if (!p.sessions.empty())
+    for (const auto& [key, value] : p.sessions.back().notes)
+      if (!key.starts_with("sweep ") && key != "commit") machine[key] = value;
+  return {{"sweep", p.sweep},       {"command", p.command}, {"seed", p.seed},
+          {"code", p.code_version}, {"commit", p.commit},   {"digest", p.digest},
+          {"missions", p.stored},   {"failed", p.failed},   {"simulated_h", p.simulated_h},
+          {"wall_h", p.wall_h},     {"inputs", p.inputs},   {"machine", machine}};
+}
+
 }  // namespace ed3r

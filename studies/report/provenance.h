@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -27,5 +28,9 @@ struct Provenance {
 
 // Reads the store in `dir`; the digest takes a pass over all timesteps. Throws UserError where there is no store.
 Provenance ReadProvenance(const std::string& dir);
+
+// What made the results: {"sweep", "command", "seed", "code", "commit", "digest", "missions", "failed", "simulated_h",
+// "wall_h", "inputs", "machine": the last session's notes}. Without hosts and times of day.
+nlohmann::ordered_json ManifestJson(const Provenance& provenance);
 
 }  // namespace ed3r

@@ -63,8 +63,9 @@ FolderResult WriteReportFolder(const Report& report, const RunResults& results,
     if (fs::exists(figures / (figure.at("id").get<std::string>() + ".png"))) drawn.push_back(figure);
   result.figures = static_cast<int>(drawn.size());
   const std::string note = result.plot_error.empty() ? result.note : "drawing failed: " + result.plot_error;
-  WriteWhole(base / "index.html",
-             ReportPage({report, ReadProvenance(options.dir), std::move(drawn), note, options.command}));
+  const Provenance provenance = ReadProvenance(options.dir);
+  WriteWhole(base / "manifest.json", ManifestJson(provenance).dump(2) + '\n');
+  WriteWhole(base / "index.html", ReportPage({report, provenance, std::move(drawn), note, options.command}));
   return result;
 }
 
