@@ -96,7 +96,7 @@ class Stages {
  private:
   bool Ready(const Stage& stage, const std::vector<RunId>& stored) const {
     return std::all_of(stage.after.begin(), stage.after.end(), [&](const std::string& name) {
-      return ended_early_.contains(name) || Complete(plan_, stored, name);
+      return finished_.contains(name) || Complete(plan_, stored, name);
     });
   }
 
@@ -141,7 +141,7 @@ class Stages {
         return options_.half_width(options_.dir, stage, arm, upto, precision.metric) <= precision.half_width;
       });
     }
-    ended_early_.insert(plan.name);
+    finished_.insert(plan.name);
   }
 
   void Train() {
@@ -161,7 +161,8 @@ class Stages {
   const RunLayout layout_;
   const std::unique_ptr<ResultStore> store_;
   std::unique_ptr<NetworkShelf> networks_;
-  std::set<std::string> ended_early_;  // stages whose arms are all known well enough, or flown out
+  std::set<std::string>
+      finished_;  // stages with a precision whose arms are all known well enough, or flown out
   SweepSummary summary_;
 };
 

@@ -65,6 +65,7 @@ std::vector<ArmPlan> ReadArmPlans(std::string_view plan_text) {
   std::vector<ArmPlan> plans;
   std::set<std::string> warmups;
   std::string stage, kind;
+  std::optional<Precision> precision;
   std::istringstream lines{std::string(plan_text)};
   for (std::string line; std::getline(lines, line);) {
     const auto equals = line.find('=');
@@ -72,13 +73,17 @@ std::vector<ArmPlan> ReadArmPlans(std::string_view plan_text) {
     const std::string key = line.substr(0, equals), value = line.substr(equals + 1);
     if (key == "stage") {
       stage = value;
+      precision.reset();
+    } else if (key == "precision") {
+      std::istringstream words(value);
+      words >> precision.emplace().metric >> precision->half_width >> precision->every;
     } else if (key == "kind") {
       kind = value;
     } else if (key == "after") {
       if (kind == "train")
         for (const std::string& name : SplitList(value)) warmups.insert(name);
     } else if (key == "arm") {
-      plans.push_back({.stage = stage, .name = value, .settings = {}});
+      plans.push_back({.stage = stage, .name = value, .settings = {}, .precision = precision});
     } else if (key.find('.') != std::string::npos && !plans.empty()) {
       plans.back().settings[key] = value;
     }

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "engine/mission/record.h"
 #include "engine/store/reader.h"
+#include "engine/sweep/plan.h"
 #include "engine/world/scene.h"
 
 namespace ed3r {
@@ -20,6 +22,7 @@ struct ArmPlan {
   std::string stage, name;
   bool warmup = false;                          // a training stage builds on its stage
   std::map<std::string, std::string> settings;  // every parameter of its configuration, as text
+  std::optional<Precision> precision = {};      // of its stage
 
   // "" where there is none of that key.
   std::string Setting(const std::string& key) const;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 #include "engine/store/reader.h"
+#include "studies/figures/run_source.h"
 #include "studies/metrics/metrics.h"
 
 namespace ed3r {
@@ -25,21 +25,6 @@ double HalfWidthOf(ArmData arm, int missions, const std::string& metric) {
   return 0.5 * (value.hi - value.lo);
 }
 
-// The precision of a stage as the canonical text of its plan has it; nothing where an arm flies all its missions.
-std::optional<Precision> PrecisionOf(const std::string& plan_text, const std::string& stage_name) {
-  std::istringstream lines(plan_text);
-  std::string stage;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("stage=")) stage = line.substr(6);
-    if (stage != stage_name || !line.starts_with("precision=")) continue;
-    Precision precision;
-    std::istringstream words(line.substr(10));
-    words >> precision.metric >> precision.half_width >> precision.every;
-    return precision;
-  }
-  return std::nullopt;
-}
-
 // An arm that is known well enough misses nothing.
 bool KnownWellEnough(const ArmData& arm, const std::optional<Precision>& precision) {
   if (!precision) return false;
@@ -55,10 +40,13 @@ RunResults LoadRun(const std::string& dir) {
   const RunLayout& layout = reader.Layout();
   RunResults results{layout.name, {}};
   const std::vector<ArmStatus> status = reader.Status();
+  const std::vector<ArmPlan> plans = ReadArmPlans(reader.StoredRecipe().plan_text);
   for (int s = 0; s < static_cast<int>(layout.stages.size()); ++s) {
     const RunLayout::Stage& stage = layout.stages[s];
     if (stage.missions == 0) continue;
-    const std::optional<Precision> precision = PrecisionOf(reader.StoredRecipe().plan_text, stage.name);
+    const auto plan =
+        std::find_if(plans.begin(), plans.end(), [&](const ArmPlan& p) { return p.stage == stage.name; });
+    const std::optional<Precision> precision = plan == plans.end() ? std::nullopt : plan->precision;
     for (int a = 0; a < static_cast<int>(stage.arms.size()); ++a) {
       ArmData arm{stage.name, stage.arms[a].name, LoadMissions(reader, s, a)};
       const auto flown = static_cast<std::int64_t>(arm.missions.size());

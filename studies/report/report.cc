@@ -28,17 +28,19 @@ Report MakeReport(const RunResults& results) {
   Report report;
   report.name = results.name;
   report.variants = CompareVariants(results.arms);
-  const std::vector<ArmData> arms = report.variants.variants.empty()
-                                        ? results.arms
-                                        : ArmsOfVariant(results.arms, report.variants.variants.front());
+  const bool variants = !report.variants.variants.empty();
+  const std::vector<ArmData> first =
+      variants ? ArmsOfVariant(results.arms, report.variants.variants.front()) : std::vector<ArmData>();
+  const std::vector<ArmData>& arms = variants ? first : results.arms;
   for (const ArmData& arm : results.arms) report.arms.push_back(ComputeMetrics(arm));
   std::vector<ArmMetrics> p85;
   for (const ArmData& arm : arms) {
-    report.told.push_back(ComputeMetrics(arm));
+    if (variants) report.told.push_back(ComputeMetrics(arm));
     report.generalisation.push_back(ComputeGeneralisation(arm));
     p85.push_back(ComputeMetrics(P85Group(arm)));
   }
-  report.claims = JudgeClaims(PaperClaims(), arms);
+  if (!variants) report.told = report.arms;
+  report.claims = variants ? report.variants.verdicts.front() : JudgeClaims(PaperClaims(), arms);
   report.convergence = Convergence(arms);
   report.tables = MakeStudyTables(report.told, p85);
   return report;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <iterator>
 
 #include "studies/metrics/definitions.h"
 #include "studies/paper/csv.h"
@@ -18,7 +19,6 @@ std::string CellText(const VariantDifference& d) {
   return fmt::format("{:+.1f}{} [{:+.1f}, {:+.1f}]", d.difference, clear ? "*" : "", d.lo, d.hi);
 }
 
-// Differences come three to an arm and variant, one per metric.
 std::string DifferenceTable(const VariantStudy& study) {
   const auto heading = [](const char* metric) {
     const MetricDefinition& definition = MetricDefinitions()[MetricIndex(metric)];
@@ -27,13 +27,13 @@ std::string DifferenceTable(const VariantStudy& study) {
   std::string text =
       fmt::format("Variants minus '{}', paired by scenario (* interval without 0)\n", study.variants[0]);
   text += Pad("arm", kArmWidth, Align::kLeft) + Pad("variant", kVariantWidth, Align::kLeft);
-  for (const char* metric : {"total_energy_kj", "msr_pct", "duration_mean_min"})
-    text += Pad(heading(metric), kCellWidth, Align::kRight);
+  for (const char* metric : kComparedMetrics) text += Pad(heading(metric), kCellWidth, Align::kRight);
   text += "\n" + Rule(kTerminalWidth) + "\n";
-  for (std::size_t i = 0; i + 2 < study.differences.size(); i += 3) {
+  constexpr std::size_t kMetrics = std::size(kComparedMetrics);
+  for (std::size_t i = 0; i < study.differences.size(); i += kMetrics) {
     const VariantDifference& first = study.differences[i];
     text += Pad(first.arm, kArmWidth, Align::kLeft) + Pad(first.variant, kVariantWidth, Align::kLeft);
-    for (std::size_t m = 0; m < 3; ++m)
+    for (std::size_t m = 0; m < kMetrics; ++m)
       text += Pad(CellText(study.differences[i + m]), kCellWidth, Align::kRight);
     text += "\n";
   }

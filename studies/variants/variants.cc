@@ -10,8 +10,6 @@
 namespace ed3r {
 namespace {
 
-constexpr const char* kComparedMetrics[] = {"total_energy_kj", "msr_pct", "duration_mean_min"};
-
 std::size_t At(const std::string& name) { return name.find('@'); }
 
 std::string VariantOf(const ArmData& arm) {

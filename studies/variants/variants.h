@@ -14,6 +14,9 @@
 
 namespace ed3r {
 
+// Metrics whose differences are told.
+inline constexpr const char* kComparedMetrics[] = {"total_energy_kj", "msr_pct", "duration_mean_min"};
+
 // One metric of one arm in a variant minus the same in the first variant: mean over scenarios that both flew, with a 95 %
 // interval (Student's t; where several networks flew, at least as wide as t over the networks' own differences).
 struct VariantDifference {
@@ -32,8 +35,8 @@ struct VerdictChange {
 struct VariantStudy {
   std::vector<std::string>
       variants;  // as flown, the first is what the others are compared with; empty: no variants
-  std::vector<VariantDifference> differences;
-  std::vector<ClaimStudy> verdicts;  // one per variant
+  std::vector<VariantDifference> differences;  // by variant, then arm, then metric: all of kComparedMetrics
+  std::vector<ClaimStudy> verdicts;            // one per variant
   std::vector<VerdictChange> changes;
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Two arms of random bits of the battery: the smaller one's energies spread less.
+// Two arms: with the smaller battery energies spread less, so that arm is known sooner.
 std::string WriteSweep(const ScratchFolder& scratch, const std::string& precision) {
   const std::string file = (scratch / "precise.yaml").string();
   std::ofstream(file) << "name: precise\nmissions: 60\nprecision: " << precision
