@@ -7,6 +7,7 @@
 #include "engine/app/commands.h"
 #include "engine/app/settings.h"
 #include "engine/perception/vision/frame_detector.h"
+#include "studies/detection/difference.h"
 #include "studies/detection/frame_set.h"
 #include "studies/detection/scores.h"
 
@@ -33,17 +34,30 @@ Confidences Look(const DetectorPair& detectors, const FrameStack& frames) {
   return found;
 }
 
+Json Number(double value) { return std::isnan(value) ? Json(nullptr) : Json(value); }
+
 Json JsonOf(const DetectionScores& s) {
-  const auto number = [](double value) { return std::isnan(value) ? Json(nullptr) : Json(value); };
-  return {{"auc", number(s.auc)},
-          {"accuracy", number(s.accuracy)},
-          {"accuracy_lo", number(s.accuracy_interval.lo)},
-          {"accuracy_hi", number(s.accuracy_interval.hi)},
-          {"calibration_error", number(s.calibration_error)},
+  return {{"auc", Number(s.auc)},
+          {"accuracy", Number(s.accuracy)},
+          {"accuracy_lo", Number(s.accuracy_interval.lo)},
+          {"accuracy_hi", Number(s.accuracy_interval.hi)},
+          {"calibration_error", Number(s.calibration_error)},
           {"true_positives", s.true_positives},
           {"false_negatives", s.false_negatives},
           {"false_positives", s.false_positives},
           {"true_negatives", s.true_negatives}};
+}
+
+Json JsonOf(const Difference& d) {
+  return {{"mean", Number(d.value)}, {"lo", Number(d.interval.lo)}, {"hi", Number(d.interval.hi)}};
+}
+
+Json JsonOf(const DetectorDifference& d) {
+  return {{"auc", JsonOf(d.auc)},
+          {"accuracy", JsonOf(d.accuracy)},
+          {"cross_entropy", JsonOf(d.cross_entropy)},
+          {"views", d.views},
+          {"views_decided_differently", d.decided_differently}};
 }
 
 std::string Row(const DetectionScores& s) {
@@ -51,6 +65,31 @@ std::string Row(const DetectionScores& s) {
                      100 * s.accuracy, 100 * s.accuracy_interval.lo, 100 * s.accuracy_interval.hi,
                      s.true_positives, s.false_negatives, s.false_positives, s.true_negatives,
                      s.calibration_error);
+}
+
+enum class Better { kMore, kLess };
+
+// "-0.0006 (-0.0015 to 0.0002): not distinguishable": a difference in units of 1 / scale.
+std::string InWords(const Difference& d, double scale, int digits, const std::string& unit, Better better) {
+  if (std::isnan(d.value)) return "none: it takes frames with and without fire";
+  const std::string value = fmt::format("{:7.{}f}{}", scale * d.value, digits, unit);
+  if (!d.interval.Exists()) return value + ": too few views for an interval";
+  const char* meaning = "not distinguishable";
+  if (d.Distinguishable())
+    meaning = (d.value > 0.0) == (better == Better::kMore) ? "Quantized is better" : "Quantized is worse";
+  return fmt::format("{} ({:.{}f} to {:.{}f}): {}", value, scale * d.interval.lo, digits,
+                     scale * d.interval.hi, digits, meaning);
+}
+
+void Print(const DetectorDifference& d) {
+  const bool few = d.accuracy.interval.Exists() && d.decided_differently < kFewDecidedDifferently;
+  fmt::print(
+      "\nQuantized minus Full, same frames (95 %, views drawn again):\n"
+      "  AUC           {}\n  accuracy      {}\n  cross-entropy {}\n"
+      "They decide differently in {} of {} views{}.\n",
+      InWords(d.auc, 1.0, 4, "", Better::kMore), InWords(d.accuracy, 100.0, 2, " points", Better::kMore),
+      InWords(d.cross_entropy, 1.0, 4, "", Better::kLess), d.decided_differently, d.views,
+      few ? ", so few that the interval of the accuracy may be too narrow" : "");
 }
 
 int Evaluate(const Options& options, const DetectorPair& detectors) {
@@ -62,6 +101,10 @@ int Evaluate(const Options& options, const DetectorPair& detectors) {
       {"distance", ByDistance(set.labels)},
       {"occlusion", ByOcclusion(set.labels)},
       {"size", BySize(set.labels)}};
+  const auto compare = [&](const Group& group, int resamples) {
+    return SecondMinusFirst(found.full, found.quantized, set.labels, group.frames, resamples);
+  };
+  const DetectorDifference difference = compare(All(set.labels), kManyResamples);
   Json json;
   if (!options.json)
     fmt::print(
@@ -73,13 +116,22 @@ int Evaluate(const Options& options, const DetectorPair& detectors) {
     for (const Group& group : groups) {
       const DetectionScores full = ScoresOf(found.full, set.labels, group.frames);
       const DetectionScores quantized = ScoresOf(found.quantized, set.labels, group.frames);
-      json[title][group.name] = {
-          {"frames", full.Frames()}, {"full", JsonOf(full)}, {"quantized", JsonOf(quantized)}};
-      if (options.json) continue;
+      if (options.json) {
+        json[title][group.name] = {{"frames", full.Frames()},
+                                   {"full", JsonOf(full)},
+                                   {"quantized", JsonOf(quantized)},
+                                   {"difference", JsonOf(compare(group, kSomeResamples))}};
+        continue;
+      }
       fmt::print("{:<20} {:<9} {}\n", group.name, "Full", Row(full));
       fmt::print("{:<20} {:<9} {}\n", "", "Quantized", Row(quantized));
     }
-  if (options.json) fmt::print("{}\n", json.dump(2));
+  if (options.json) {
+    json["difference"] = json["all"]["all"]["difference"] = JsonOf(difference);
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    Print(difference);
+  }
   return kDone;
 }
 

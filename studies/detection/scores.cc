@@ -9,6 +9,8 @@
 #include <map>
 
 #include "engine/core/check.h"
+#include "studies/detection/roc_area.h"
+#include "studies/detection/views.h"
 
 namespace ed3r {
 namespace {
@@ -16,26 +18,10 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Rank sum (Mann-Whitney); ties count half.
 double Auc(std::span<const double> confidences, std::span<const FrameLabel> labels,
-           std::vector<std::size_t> order) {
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return confidences[a] < confidences[b]; });
-  double rank_sum = 0.0, positives = 0.0;
-  for (std::size_t begin = 0; begin < order.size();) {
-    std::size_t end = begin;
-    while (end < order.size() && confidences[order[end]] == confidences[order[begin]]) ++end;
-    const double rank = 0.5 * static_cast<double>(begin + 1 + end);
-    for (std::size_t i = begin; i < end; ++i)
-      if (labels[order[i]].positive) {
-        rank_sum += rank;
-        positives += 1.0;
-      }
-    begin = end;
-  }
-  const double negatives = static_cast<double>(order.size()) - positives;
-  if (positives == 0.0 || negatives == 0.0) return kNan;
-  return (rank_sum - positives * (positives + 1.0) / 2.0) / (positives * negatives);
+           const std::vector<std::size_t>& chosen) {
+  const std::vector<int> one_unit(chosen.size(), 0), once = {1};
+  return RocArea(confidences, labels, chosen, one_unit).Of(once);
 }
 
 double CalibrationError(std::span<const double> confidences, std::span<const FrameLabel> labels,
@@ -54,16 +40,12 @@ double CalibrationError(std::span<const double> confidences, std::span<const Fra
 
 Interval AccuracyInterval(std::span<const double> confidences, std::span<const FrameLabel> labels,
                           const std::vector<std::size_t>& chosen) {
-  std::map<std::pair<std::string, int>, std::pair<double, double>> views;
-  for (const std::size_t i : chosen) {
-    auto& [right, frames] = views[{labels[i].world, labels[i].view}];
-    right += (confidences[i] >= kDecision) == labels[i].positive ? 1.0 : 0.0;
-    frames += 1.0;
-  }
-  std::vector<double> right, frames;
-  for (const auto& [view, counts] : views) {
-    right.push_back(counts.first);
-    frames.push_back(counts.second);
+  const Views views = ViewsOf(labels, chosen);
+  std::vector<double> right(static_cast<std::size_t>(views.count)), frames(right.size());
+  for (std::size_t c = 0; c < chosen.size(); ++c) {
+    const auto view = static_cast<std::size_t>(views.of_frame[c]);
+    right[view] += (confidences[chosen[c]] >= kDecision) == labels[chosen[c]].positive ? 1.0 : 0.0;
+    frames[view] += 1.0;
   }
   return ShareInterval(right, frames, ShareUnit::kTimestep);
 }
