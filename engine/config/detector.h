@@ -43,10 +43,12 @@ struct DetectorConfig {
   static void Describe(Self& self, Visitor&& visit) {
     constexpr std::string_view kSource = "none in the paper";
     constexpr std::string_view kModel = "Table of CV models";
-    visit("full", self.full,
-          {.source = kModel, .meaning = "Full network: builtin, or the path of an ONNX model"});
+    visit(
+        "full", self.full,
+        {.source = kModel, .meaning = "Full network: builtin, or an ONNX model's path from the sweep file"});
     visit("quantized", self.quantized,
-          {.source = kModel, .meaning = "Quantized network: builtin, or the path of an ONNX model"});
+          {.source = kModel,
+           .meaning = "Quantized network: builtin, or an ONNX model's path from the sweep file"});
     visit("input_width_px", self.input_width_px,
           {.unit = "px",
            .min = 8,

@@ -61,9 +61,10 @@ std::map<std::string, std::string> Inputs::Fingerprints(const SweepPlan& plan) c
   std::map<std::string, std::string> fingerprints;
   for (const Stage& stage : plan.stages) {
     for (const Arm& arm : stage.arms) {
-      fingerprints[arm.world] = SceneOf(arm.config).Fingerprint();
+      const Config named = arm.CanonicalConfig();
+      fingerprints[named.mission.world] = SceneOf(arm.config).Fingerprint();
       if (const PixelTier* pixels = PixelsOf(arm.config)) {
-        const DetectorConfig& detector = arm.config.perception.detector;
+        const DetectorConfig& detector = named.perception.detector;
         fingerprints[fmt::format("detectors {}, {}", detector.full, detector.quantized)] =
             pixels->detectors.fingerprint;
       }

@@ -17,7 +17,7 @@ namespace {
 void Apply(const Setting& setting, Arm& arm) {
   const std::string problem = SetParameter(arm.config, setting.key, setting.text);
   ED3R_CHECK(problem.empty(), problem);  // checked when it was read
-  if (setting.key == "mission.world") arm.world = setting.canonical;
+  if (NamesAFile(setting.key)) arm.files[setting.key] = setting.canonical;
 }
 
 // Combinations of the axes; the largest number there is when they are even more.
@@ -59,8 +59,8 @@ class StageExpander {
     CheckOffAxes(fixed, overrides);
     fixed_ = MergedSettings(fixed, overrides);
     Arm common;
-    common.world = common.config.mission.world;
-    common.config.mission.world = WorldPath(top_folder, common.world);
+    common.files["mission.world"] = common.config.mission.world;
+    common.config.mission.world = PathFrom(top_folder, common.config.mission.world);
     for (const Setting& setting : fixed_) Apply(setting, common);
     for (std::int64_t index = 0; index < Size(); ++index) AddCombination(index, common);
     if (stage_.arms.empty())

@@ -3,8 +3,18 @@
 #include <fmt/format.h>
 
 #include "engine/config/parameters.h"
+#include "engine/core/check.h"
 
 namespace ed3r {
+
+Config Arm::CanonicalConfig() const {
+  Config canonical = config;
+  for (const auto& [key, path] : files) {
+    const std::string problem = SetParameter(canonical, key, path);
+    ED3R_CHECK(problem.empty(), problem);
+  }
+  return canonical;
+}
 
 std::int64_t SweepPlan::Missions() const {
   std::int64_t sum = 0;
@@ -22,9 +32,7 @@ std::string SweepPlan::CanonicalText() const {
       text += fmt::format("precision={} {} {}\n", stage.precision->metric, stage.precision->half_width,
                           stage.precision->every);
     for (const Arm& arm : stage.arms) {
-      Config config = arm.config;
-      if (!arm.world.empty()) config.mission.world = arm.world;
-      text += fmt::format("arm={}\n", arm.name) + ed3r::CanonicalText(config);
+      text += fmt::format("arm={}\n", arm.name) + ed3r::CanonicalText(arm.CanonicalConfig());
     }
   }
   return text;

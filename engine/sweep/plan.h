@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,10 +24,13 @@ struct Arm {
   std::string variant;
   std::vector<std::pair<std::string, std::string>> settings;  // what the axes set, for tables
 
-  // config.mission.world as the canonical text has it: relative to the sweep file's folder, or absolute where
-  // it was written so. config.mission.world itself can be opened as it stands. "" (a plan made by hand): the
-  // two are the same.
-  std::string world;
+  // By key, the parameters that name files (world, detectors) as the canonical text has them: relative to the sweep
+  // file's folder, or absolute where they were written so. In `config` they can be opened as they stand. Without an
+  // entry (a plan made by hand) the two are the same.
+  std::map<std::string, std::string> files;
+
+  // `config` with its files as the canonical text has them.
+  Config CanonicalConfig() const;
 };
 
 // An arm stops early once the 95 % interval of one metric is narrow enough. Looked at after every `every` missions in the

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <system_error>
 
@@ -12,7 +13,9 @@
 namespace ed3r {
 namespace {
 
-constexpr std::string_view kWorldKey = "mission.world";
+constexpr std::string_view kFileKeys[] = {"mission.world", "perception.detector.full",
+                                          "perception.detector.quantized"};
+constexpr std::string_view kBuiltIn = "builtin";  // a detector that is no file
 constexpr std::string_view kAirframeKey = "robot";
 
 std::filesystem::path Absolute(const std::string& path, const std::string& at) {
@@ -31,7 +34,7 @@ std::string FullKey(std::string_view written) {
 
 std::string FolderOf(const std::string& file) { return std::filesystem::path(file).parent_path().string(); }
 
-std::string WorldPath(const std::string& folder, const std::string& written) {
+std::string PathFrom(const std::string& folder, const std::string& written) {
   return (std::filesystem::path(folder) / written).lexically_normal().string();
 }
 
@@ -46,21 +49,26 @@ Setting SettingReader::Read(const std::string& written_key, const std::string& k
   if (check_) {
     if (const std::string problem = check_(setting.key, text); !problem.empty()) FailAt(at, problem);
   }
-  if (setting.key == kWorldKey) {
-    ResolveWorld(setting);
+  if (NamesAFile(setting.key) && text != kBuiltIn) {
+    ResolveFile(setting);
   } else {
     setting.text = setting.canonical = GetParameter(scratch, setting.key);  // 1e0, 1.0 and 1 are one value
   }
   return setting;
 }
 
-void SettingReader::ResolveWorld(Setting& setting) const {
+bool NamesAFile(std::string_view key) {
+  return std::find(std::begin(kFileKeys), std::end(kFileKeys), key) != std::end(kFileKeys);
+}
+
+void SettingReader::ResolveFile(Setting& setting) const {
   const std::filesystem::path written(setting.text);
-  setting.text = WorldPath(folder_, setting.text);
+  setting.text = PathFrom(folder_, setting.text);
   std::error_code error;
   if (!std::filesystem::is_regular_file(setting.text, error))
-    FailAt(setting.at, fmt::format("{}: '{}' is not a file; looked for '{}'", setting.key, setting.canonical,
-                                   setting.text));
+    FailAt(setting.at,
+           fmt::format("{}: '{}' is not a file; looked for '{}'{}", setting.key, setting.canonical,
+                       setting.text, setting.key == kFileKeys[0] ? "" : "; 'builtin' is allowed too"));
   if (written.is_absolute() || keep_absolute_) {
     setting.canonical = setting.text;
   } else {
@@ -113,7 +121,7 @@ void SettingReader::AppendMap(const YamlNode& map, const std::string& prefix,
     if (entry.value.kind == YamlNode::Kind::kMap) {
       AppendMap(entry.value, key + ".", {}, settings);
     } else if (key == kAirframeKey && entry.value.kind == YamlNode::Kind::kScalar) {
-      for (Setting& setting : ReadAirframeFile(WorldPath(folder_, entry.value.text), entry.value.at))
+      for (Setting& setting : ReadAirframeFile(PathFrom(folder_, entry.value.text), entry.value.at))
         settings.push_back(std::move(setting));
     } else if (entry.value.kind == YamlNode::Kind::kScalar) {
       settings.push_back(Read(key, entry.at, entry.value.text, entry.value.at));

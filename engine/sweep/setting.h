@@ -18,8 +18,8 @@ using ValueCheck = std::function<std::string(const std::string& key, const std::
 
 struct Setting {
   std::string key;        // full: "mission.strategy" even where "strategy" was written
-  std::string text;       // read by SetParameter; a world file is a path that can be opened from here
-  std::string canonical;  // the same wherever the sweep lies: differs from text for a world file only
+  std::string text;       // read by SetParameter; a file is a path that can be opened from here
+  std::string canonical;  // the same wherever the sweep lies: differs from text for files only
   std::string at;         // where the value was written
 };
 
@@ -29,8 +29,11 @@ std::string FullKey(std::string_view written);
 // The folder that holds a file, "" for the present one.
 std::string FolderOf(const std::string& file);
 
-// The world file as it can be opened, when it is written in a file of this folder.
-std::string WorldPath(const std::string& folder, const std::string& written);
+// A path as it can be opened, when it is written in a file of this folder.
+std::string PathFrom(const std::string& folder, const std::string& written);
+
+// Whether the value of this parameter is a path: a world, or a detector that is not built in.
+bool NamesAFile(std::string_view key);
 
 // The parameters of an airframe file, which 'robot: FILE' includes: a YAML map of robot.*, energy.*, environment.* and
 // cpu.* keys, as `ed3r fit` writes it. Positions are those in that file.
@@ -58,7 +61,7 @@ class SettingReader {
  private:
   void AppendMap(const YamlNode& map, const std::string& prefix, const std::vector<std::string>& skipped,
                  std::vector<Setting>& settings) const;
-  void ResolveWorld(Setting& setting) const;
+  void ResolveFile(Setting& setting) const;
 
   std::string folder_;
   std::string top_folder_;

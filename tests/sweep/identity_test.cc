@@ -79,6 +79,39 @@ TEST(IdentityTest, WorldAfterSetIsRelativeToThePresentFolder) {
   EXPECT_EQ(plan.stages[0].arms[0].config.mission.world, "sweeps/worlds/a.yaml");
 }
 
+TEST(IdentityTest, DetectorsAreRelativeToTheSweepFile) {
+  const ScratchFolder scratch;
+  const std::string study =
+      "name: x\nmissions: 1\nset: {mission.world: w.yaml, perception.detector.full: nets/a.onnx}\n";
+  for (const char* folder : {"here", "far/away"}) {
+    scratch.Write(std::string(folder) + "/w.yaml", "w");
+    scratch.Write(std::string(folder) + "/nets/a.onnx", "a");
+    const SweepPlan plan = LoadSweep(scratch.Write(std::string(folder) + "/x.yaml", study));
+    const std::string text = plan.CanonicalText();
+    EXPECT_NE(text.find("\nperception.detector.full=nets/a.onnx\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("\nperception.detector.quantized=builtin\n"), std::string::npos) << text;
+    EXPECT_EQ(plan.stages[0].arms[0].config.perception.detector.full,
+              scratch.Path() + "/" + folder + "/nets/a.onnx");
+    EXPECT_EQ(plan.stages[0].arms[0].config.perception.detector.quantized, "builtin");
+  }
+}
+
+TEST(IdentityTest, ADetectorThatIsNoFileIsRefusedBeforeAnythingElse) {
+  const ScratchFolder scratch;
+  scratch.Write("w.yaml", "w");
+  const std::string file = scratch.Write(
+      "x.yaml", "name: x\nmissions: 1\nset: {mission.world: w.yaml, perception.detector.full: a.onnx}\n");
+  try {
+    LoadSweep(file);
+    FAIL() << "a detector that does not exist was accepted";
+  } catch (const UserError& error) {
+    const std::string said = error.what();
+    EXPECT_NE(said.find("x.yaml:3:"), std::string::npos) << said;
+    EXPECT_NE(said.find("perception.detector.full: 'a.onnx' is not a file"), std::string::npos) << said;
+    EXPECT_NE(said.find("'builtin' is allowed too"), std::string::npos) << said;
+  }
+}
+
 TEST(IdentityTest, AbsoluteWorldsStayAbsolute) {
   const ScratchFolder scratch;
   const std::string world = scratch.Write("elsewhere/w.yaml", "w");
