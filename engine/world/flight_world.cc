@@ -30,6 +30,13 @@ constexpr int kPoolSize = 16;
 constexpr int kSolverIterations = 4;
 // Rounding of the box inside which GJK finds contacts; Bullet's default of 4 cm suits larger bodies.
 constexpr double kCollisionMarginM = 0.005;
+// In air that is known to be clear a step moves the body and asks nothing of the scene. What is known is a cube
+// around the place where Bullet's tree of triangles was last asked, as wide as the robot in any attitude plus
+// this; near surfaces the question is put again after a shorter way. It exceeds a step's way (6 cm at the
+// fastest that the parameters allow) and Bullet's margins (5 cm) by far.
+constexpr float kClearAirM = 1.0f;
+constexpr float kAskAgainM = 0.25f;
+constexpr double kReachM = 0.2;  // of contacts, beyond the hull
 // The static body's bounds reach beyond every flight, so that the pair (robot, scene) is made once and kept.
 constexpr float kForeverM = 1e6f;
 
@@ -59,8 +66,10 @@ class SceneBody : public btCollisionObject {
 }  // namespace
 
 struct FlightWorld::Impl {
-  Impl(const StaticGeometry& geometry, const RigidBodySpec& robot, double gravity_mps2)
-      : configuration(SmallPools()),
+  Impl(const StaticGeometry& the_geometry, const RigidBodySpec& robot, double gravity_mps2)
+      : geometry(the_geometry),
+        hull_radius_m(0.5 * robot.size_m.norm()),
+        configuration(SmallPools()),
         dispatcher(&configuration),
         broadphase(/*maxProxies=*/4),
         world(&dispatcher, &broadphase, &solver, &configuration),
@@ -97,6 +106,39 @@ struct FlightWorld::Impl {
     return info;
   }
 
+  // Whether no surface can be touched in the coming step.
+  bool InClearAir() {
+    const btVector3& at_m = body.getWorldTransform().getOrigin();
+    const btVector3 moved_m = (at_m - asked_at_m).absolute();
+    const float farthest_m = std::max({moved_m.x(), moved_m.y(), moved_m.z()});
+    if (asked && farthest_m < (clear ? kClearAirM : kAskAgainM)) return clear;
+    const bool was_clear = asked && clear;
+    asked = true;
+    asked_at_m = at_m;
+    clear = geometry.Clear(FromBullet(at_m), hull_radius_m + kReachM + kClearAirM);
+    // Contacts that Bullet remembers from before are over.
+    if (clear && !was_clear)
+      for (int i = 0; i < dispatcher.getNumManifolds(); ++i)
+        dispatcher.getManifoldByIndexInternal(i)->clearManifold();
+    return clear;
+  }
+
+  // What stepSimulation does to a body that nothing touches, operation by operation (forces as the constraint
+  // solver's external impulses), so that both ways give the same bits.
+  void StepFreely() {
+    constexpr auto kStep = static_cast<float>(kStepS);
+    body.applyGravity();
+    const btVector3 push = body.getTotalForce() * body.getInvMass() * kStep;
+    btVector3 spin = body.getTotalTorque() * body.getInvInertiaTensorWorld() * kStep;
+    spin += body.computeGyroscopicImpulseImplicit_Body(kStep);
+    body.setLinearVelocity(body.getLinearVelocity() + push);
+    body.setAngularVelocity(body.getAngularVelocity() + spin);
+    btTransform next;
+    body.predictIntegratedTransform(kStep, next);
+    body.proceedToTransform(next);
+    body.clearForces();
+  }
+
   bool Touching() {
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
       const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
@@ -106,6 +148,8 @@ struct FlightWorld::Impl {
     return false;
   }
 
+  const StaticGeometry& geometry;
+  const double hull_radius_m;
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher;
   btSimpleBroadphase broadphase;
@@ -116,6 +160,10 @@ struct FlightWorld::Impl {
   btRigidBody body;
   int contact_steps = 0;
   bool stepped = false;
+  // The last question about clear air, and its answer.
+  bool asked = false;
+  bool clear = false;
+  btVector3 asked_at_m{0, 0, 0};
 };
 
 FlightWorld::FlightWorld(const StaticGeometry& geometry, const RigidBodySpec& robot, double gravity_mps2) {
@@ -138,6 +186,7 @@ void FlightWorld::SetState(const RigidBodyState& state) {
   body.setAngularVelocity(ToBullet(state.attitude * state.rate_radps));
   body.updateInertiaTensor();
   body.clearForces();
+  impl_->asked = false;
 }
 
 RigidBodyState FlightWorld::State() const {
@@ -157,6 +206,10 @@ void FlightWorld::Step(const Eigen::Vector3d& force_world_n, const Eigen::Vector
   btRigidBody& body = impl_->body;
   body.applyCentralForce(ToBullet(force_world_n));
   body.applyTorque(body.getWorldTransform().getBasis() * ToBullet(torque_body_nm));
+  if (impl_->InClearAir()) {
+    impl_->StepFreely();
+    return;
+  }
   std::unique_lock<std::mutex> lock;
   if (!impl_->stepped) lock = std::unique_lock(WorldMutex());
   impl_->stepped = true;

@@ -235,6 +235,18 @@ void StaticGeometry::HiddenTowards(std::span<const Eigen::Vector3f> points_m,
   }
 }
 
+bool StaticGeometry::Clear(const Eigen::Vector3d& centre_m, double half_side_m) const {
+  struct AnyTriangle final : btTriangleCallback {
+    bool found = false;
+    void processTriangle(btVector3*, int, int) override { found = true; }
+  } any;
+  const Eigen::Vector3f low = (centre_m.array() - half_side_m).cast<float>();
+  const Eigen::Vector3f high = (centre_m.array() + half_side_m).cast<float>();
+  impl_->shape.processAllTriangles(&any, btVector3(low.x(), low.y(), low.z()),
+                                   btVector3(high.x(), high.y(), high.z()));
+  return !any.found;
+}
+
 btCollisionShape* StaticGeometry::Shape() const { return &impl_->shape; }
 
 const TriangleMesh& StaticGeometry::Mesh() const { return impl_->mesh; }

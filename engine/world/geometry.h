@@ -61,6 +61,10 @@ class StaticGeometry {
   void HiddenTowards(std::span<const Eigen::Vector3f> points_m, const Eigen::Vector3f& direction,
                      double range_m, std::span<std::uint8_t> hidden) const;
 
+  // Whether a cube around a point, half_side_m to each side, is free of surfaces. May say no where one is a
+  // little outside of it.
+  bool Clear(const Eigen::Vector3d& centre_m, double half_side_m) const;
+
   // The static shape for a Bullet world; owned by this object. Bullet does not modify it while stepping.
   btCollisionShape* Shape() const;
 

@@ -86,6 +86,64 @@ TEST(FlightWorldTest, TouchesTheTrunkThatItPushesInto) {
   EXPECT_LT(world.State().position_m.x(), 103.0);
 }
 
+// A tumbling robot, once where Bullet must look for contacts at every step, once in clear air.
+TEST(FlightWorldTest, NearSurfacesAndInClearAirMotionHasTheSameBits) {
+  const Scene clear = FlatScene();
+  // Bare poles around the way, which stay a metre and more off the robot but inside of what counts as clear.
+  std::vector<Tree> poles;
+  for (const double y_m : {98.4, 101.6})
+    for (double x_m = 90.0; x_m < 130.0; x_m += 0.8)
+      poles.push_back({.x_m = x_m,
+                       .y_m = y_m,
+                       .ground_m = 5,
+                       .height_m = 60,
+                       .trunk_radius_m = 0.1,
+                       .crown_radius_m = 0.15,
+                       .crown_depth_m = 1});
+  const Scene crowded = FlatScene(std::move(poles));
+  const auto fly = [](const Scene& scene) {
+    FlightWorld world(scene.Geometry(), kRobot, kGravity);
+    RigidBodyState state = At(95, 100, 40);
+    state.velocity_mps = {4.0, 0.0, 1.0};
+    state.rate_radps = {1.5, -2.0, 0.5};
+    world.SetState(state);
+    std::vector<RigidBodyState> states;
+    for (int i = 0; i < 1200; ++i) {
+      world.Step({0.3, 0.0, kRobot.mass_kg * kGravity}, {0.001, 0.0, 0.0005});
+      states.push_back(world.State());
+    }
+    EXPECT_EQ(world.ContactSteps(), 0);
+    return states;
+  };
+  ASSERT_TRUE(clear.Geometry().Clear({100, 100, 40}, 2.0));
+  ASSERT_FALSE(crowded.Geometry().Clear({100, 100, 40}, 2.0));
+  const std::vector<RigidBodyState> freely = fly(clear), watched = fly(crowded);
+  for (std::size_t i = 0; i < freely.size(); ++i) {
+    ASSERT_EQ(freely[i].position_m, watched[i].position_m) << "step " << i;
+    ASSERT_EQ(freely[i].attitude.coeffs(), watched[i].attitude.coeffs()) << "step " << i;
+    ASSERT_EQ(freely[i].velocity_mps, watched[i].velocity_mps) << "step " << i;
+    ASSERT_EQ(freely[i].rate_radps, watched[i].rate_radps) << "step " << i;
+  }
+}
+
+// However it comes: out of clear air, and as fast as the parameters allow.
+TEST(FlightWorldTest, ClearAirHidesNoContact) {
+  const Scene scene = FlatScene();
+  for (const double speed_mps : {1.0, 5.0, 15.0}) {
+    FlightWorld world(scene.Geometry(), kRobot, kGravity);
+    RigidBodyState state = At(100, 100, 45);
+    state.velocity_mps = {0.0, 0.0, -speed_mps};
+    world.SetState(state);
+    double lowest_m = state.position_m.z();
+    for (int i = 0; i < 240 * 45 && world.ContactSteps() == 0; ++i) {
+      world.Step({0.0, 0.0, kRobot.mass_kg * kGravity}, Eigen::Vector3d::Zero());
+      lowest_m = world.State().position_m.z();
+    }
+    EXPECT_GT(world.ContactSteps(), 0) << speed_mps;
+    EXPECT_GT(lowest_m, 5.0 + 0.1 - 0.04 - speed_mps * FlightWorld::kStepS) << speed_mps;
+  }
+}
+
 TEST(FlightWorldTest, WorldsInOtherThreadsChangeNothing) {
   const Scene scene = FlatScene();
   const auto bounce = [&](double x_m) {

@@ -53,6 +53,15 @@ TEST(Terrain, SplitsCellsFromSouthWestToNorthEast) {
   EXPECT_DOUBLE_EQ(cell.HeightAt(0.5, 1.5), 4.0);
 }
 
+TEST(Geometry, ACubeIsClearWhereNoSurfaceCrossesIt) {
+  const StaticGeometry geometry(OneTriangle());
+  EXPECT_TRUE(geometry.Clear({2, 2, 1.5}, 1.0));
+  EXPECT_FALSE(geometry.Clear({2, 2, 0.9}, 1.0));
+  EXPECT_FALSE(geometry.Clear({2, 2, -0.9}, 1.0));
+  EXPECT_TRUE(geometry.Clear({-1.5, 2, 0}, 1.0));
+  EXPECT_FALSE(geometry.Clear({-0.9, 2, 0}, 1.0));
+}
+
 TEST(Terrain, ClampsPositionsOutside) {
   const Scene scene(PartsOf(11, 2.0, Hills));
   EXPECT_EQ(scene.Ground().HeightAt(-50.0, 7.0), scene.Ground().HeightAt(0.0, 7.0));
