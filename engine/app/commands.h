@@ -19,6 +19,7 @@ Command AddRun(CLI::App& program);
 Command AddPlan(CLI::App& program);
 Command AddStatus(CLI::App& program);
 Command AddReport(CLI::App& program);
+Command AddCompare(CLI::App& program);
 Command AddDigest(CLI::App& program);
 Command AddMerge(CLI::App& program);
 Command AddReplay(CLI::App& program);

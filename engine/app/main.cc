@@ -12,9 +12,10 @@ namespace ed3r {
 namespace {
 
 std::vector<Command> AddCommands(CLI::App& program) {
-  return {AddRun(program),   AddPlan(program),   AddStatus(program),  AddReport(program), AddDigest(program),
-          AddMerge(program), AddReplay(program), AddExplain(program), AddParams(program), AddPhysics(program),
-          AddFit(program),   AddWorld(program),  AddFrames(program),  AddDetect(program), AddDoctor(program)};
+  return {AddRun(program),     AddPlan(program),   AddStatus(program),  AddReport(program),
+          AddCompare(program), AddDigest(program), AddMerge(program),   AddReplay(program),
+          AddExplain(program), AddParams(program), AddPhysics(program), AddFit(program),
+          AddWorld(program),   AddFrames(program), AddDetect(program),  AddDoctor(program)};
 }
 
 int Main(int argc, char** argv) {

@@ -46,14 +46,16 @@ std::string ChangeTable(const VariantStudy& study) {
       fmt::format("\nClaims of the paper judged otherwise than under '{}'\n", study.variants[0]);
   for (std::size_t v = 1; v < study.variants.size(); ++v) {
     std::string line;
-    int count = 0;
+    int count = 0, undecided = 0;
     for (const VerdictChange& change : study.changes) {
       if (change.variant != study.variants[v]) continue;
       line += fmt::format("{}{}: {} -> {}", count++ > 0 ? "; " : "", change.claim, NameOf(change.base),
                           NameOf(change.here));
+      undecided += change.Undecided() ? 1 : 0;
     }
-    text +=
-        Wrap(count > 0 ? line : "none", fmt::format("{} ({}): ", study.variants[v], count), kTerminalWidth);
+    text += fmt::format("{}: {} of {} claims, {} of them from or to 'not decidable'\n", study.variants[v],
+                        count, study.verdicts.front().claims.size(), undecided);
+    if (count > 0) text += Wrap(line, "  ", kTerminalWidth);
   }
   return text;
 }

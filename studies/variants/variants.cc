@@ -95,6 +95,11 @@ std::vector<ArmData> ArmsOfVariant(std::span<const ArmData> arms, const std::str
   return own;
 }
 
+std::vector<ArmData> AsVariant(std::vector<ArmData> arms, const std::string& variant) {
+  for (ArmData& arm : arms) arm.name += "@" + variant;
+  return arms;
+}
+
 VariantStudy CompareVariants(std::span<const ArmData> arms) {
   VariantStudy study;
   study.variants = VariantsOf(arms);

@@ -1,5 +1,5 @@
 // What the variants of a study change, compared with its first one: for sensitivity studies (one reading of the paper at
-// a time) and for the same missions flown twice (two perception tiers).
+// a time) and for the same missions flown twice (two perception tiers), also by runs flown apart.
 //
 // Arms of a variant are called ARM@VARIANT (engine/sweep/plan.h). The same arm of two variants meets the same scenarios,
 // so differences are paired by scenario. Pure functions, any thread.
@@ -30,6 +30,9 @@ struct VariantDifference {
 struct VerdictChange {
   std::string claim, variant;
   Verdict base, here;
+
+  // One of the two says that the data cannot decide; otherwise the verdicts contradict each other.
+  bool Undecided() const { return base == Verdict::kNotDecidable || here == Verdict::kNotDecidable; }
 };
 
 struct VariantStudy {
@@ -45,6 +48,9 @@ std::vector<std::string> VariantsOf(std::span<const ArmData> arms);
 
 // The arms of one variant, under their own names.
 std::vector<ArmData> ArmsOfVariant(std::span<const ArmData> arms, const std::string& variant);
+
+// The same arms as a variant of that name: for runs that are compared though they were flown apart.
+std::vector<ArmData> AsVariant(std::vector<ArmData> arms, const std::string& variant);
 
 // Nothing is compared, and `variants` is empty, where the arms have no variants.
 VariantStudy CompareVariants(std::span<const ArmData> arms);

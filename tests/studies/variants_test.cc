@@ -73,6 +73,21 @@ TEST(VariantsTest, NetworksThatDisagreeWidenTheInterval) {
   EXPECT_LT(energy.lo, 0.0) << "two networks that differ by 4 kJ say nothing of the next one";
 }
 
+TEST(VariantsTest, RunsFlownApartAreComparedAsVariants) {
+  std::vector<ArmData> arms = AsVariant({{"online", "rbs", {MissionOf(3, 20, Outcome::kSuccess)}}}, "one");
+  for (ArmData& arm : AsVariant({{"online", "rbs", {MissionOf(3, 26, Outcome::kSuccess)}}}, "two"))
+    arms.push_back(arm);
+  const VariantStudy study = CompareVariants(arms);
+  EXPECT_EQ(study.variants, (std::vector<std::string>{"one", "two"}));
+  EXPECT_NEAR(study.differences.at(0).difference, 6.0, 1e-12);
+}
+
+TEST(VariantsTest, AChangeFromOrToUndecidedIsNoContradiction) {
+  EXPECT_TRUE((VerdictChange{"C1", "b", Verdict::kNotDecidable, Verdict::kDiffers}.Undecided()));
+  EXPECT_TRUE((VerdictChange{"C1", "b", Verdict::kReproduced, Verdict::kNotDecidable}.Undecided()));
+  EXPECT_FALSE((VerdictChange{"C1", "b", Verdict::kReproduced, Verdict::kDiffers}.Undecided()));
+}
+
 TEST(VariantsTest, AStudyWithoutVariantsHasNone) {
   const VariantStudy study = CompareVariants(std::vector{ArmData{"online", "rbs", {}}});
   EXPECT_TRUE(study.variants.empty());

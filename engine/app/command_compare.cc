@@ -1,0 +1,105 @@
+// What differs between runs of the same arms: seeds, perception tiers, versions of the code.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "engine/app/commands.h"
+#include "engine/core/check.h"
+#include "studies/report/files.h"
+#include "studies/report/load.h"
+#include "studies/variants/variants.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> dirs;
+  std::string out;
+  bool json = false;
+};
+
+// A run is called by its folder.
+std::string LabelOf(const std::string& dir) {
+  const fs::path path = fs::absolute(dir).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+nlohmann::ordered_json JsonOf(const VariantStudy& study) {
+  nlohmann::ordered_json json = {{"runs", study.variants},
+                                 {"differences", nlohmann::ordered_json::array()},
+                                 {"changed_verdicts", nlohmann::ordered_json::array()}};
+  const auto number = [](double value) {
+    return std::isnan(value) ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(value);
+  };
+  for (const VariantDifference& d : study.differences)
+    json["differences"].push_back({{"arm", d.arm},
+                                   {"run", d.variant},
+                                   {"metric", d.metric},
+                                   {"base", number(d.base)},
+                                   {"difference", number(d.difference)},
+                                   {"lo", number(d.lo)},
+                                   {"hi", number(d.hi)},
+                                   {"pairs", d.pairs}});
+  for (const VerdictChange& change : study.changes)
+    json["changed_verdicts"].push_back({{"claim", change.claim},
+                                        {"run", change.variant},
+                                        {"base", NameOf(change.base)},
+                                        {"here", NameOf(change.here)}});
+  return json;
+}
+
+int Compare(const Options& options) {
+  if (options.dirs.size() < 2)
+    throw UserError(fmt::format("compare: {} is one run; at least two are needed", options.dirs.front()));
+  std::vector<ArmData> arms;
+  std::vector<std::string> labels;
+  for (const std::string& dir : options.dirs) {
+    const std::string label = LabelOf(dir);
+    if (std::find(labels.begin(), labels.end(), label) != labels.end())
+      throw UserError(
+          fmt::format("{}: two of the runs are in folders called '{}'; their names must differ", dir, label));
+    labels.push_back(label);
+    const RunResults run = LoadRun(dir);
+    if (!VariantsOf(run.arms).empty())
+      throw UserError(fmt::format("{}: has variants of its own; 'ed3r report {}' compares them", dir, dir));
+    for (ArmData& arm : AsVariant(run.arms, label)) arms.push_back(std::move(arm));
+  }
+  const VariantStudy study = CompareVariants(arms);
+  if (study.differences.empty())
+    throw UserError(
+        fmt::format("{}: no arm of the other runs has the name of one of its arms", options.dirs.front()));
+  if (!options.out.empty()) {
+    const fs::path out(options.out);
+    MakeFolder(out);
+    WriteWhole(out / "compare.txt", VariantText(study));
+    WriteWhole(out / "differences.csv", DifferenceCsv(study));
+    WriteWhole(out / "verdicts.csv", VariantVerdictCsv(study));
+  }
+  fmt::print("{}", options.json ? JsonOf(study).dump(2) + "\n" : VariantText(study));
+  return kDone;
+}
+
+}  // namespace
+
+Command AddCompare(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* parser = program.add_subcommand(
+      "compare",
+      "Runs of the same arms, each compared with the first: differences paired by scenario, and the paper's "
+      "claims that are judged otherwise");
+  parser->add_option("DIR", options->dirs, "Run directories")->required();
+  parser->add_option("--out", options->out, "Folder for compare.txt, differences.csv and verdicts.csv");
+  parser->add_flag("--json", options->json, "Print JSON");
+  parser->footer(
+      "Runs of one seed meet the same scenarios; runs of different seeds are compared as independent draws "
+      "at the same places.");
+  return {parser, [options] { return Compare(*options); }};
+}
+
+}  // namespace ed3r

@@ -1,0 +1,71 @@
+// `ed3r compare`: runs flown apart, told as one table.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/app/command.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Two runs of the same missions, of which the second's battery is smaller.
+class CompareTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scratch_ = new ScratchFolder;
+    for (const auto& [name, options] :
+         {std::pair{"usual", ""}, std::pair{"small", "--set robot.battery_mah=1000"}}) {
+      const CommandResult flown = Ed3r(fmt::format("run {}/sweeps/rbs.yaml --missions 28 --quiet --out {} {}",
+                                                   ED3R_SOURCE_DIR, Dir(name), options));
+      ASSERT_EQ(flown.status, 0) << flown.err;
+    }
+  }
+  static void TearDownTestSuite() { delete scratch_; }
+  static std::string Dir(const std::string& name) { return (*scratch_ / name).string(); }
+
+  static ScratchFolder* scratch_;
+};
+ScratchFolder* CompareTest::scratch_ = nullptr;
+
+TEST_F(CompareTest, DifferencesArePairedAndWritten) {
+  const std::string out = Dir("compared");
+  const CommandResult result =
+      Ed3r(fmt::format("compare {} {} --json --out {}", Dir("usual"), Dir("small"), out));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json.at("runs"), (nlohmann::json{"usual", "small"}));
+  const auto& energy = json.at("differences").at(0);
+  EXPECT_EQ(energy.at("arm"), "rbs");
+  EXPECT_EQ(energy.at("run"), "small");
+  EXPECT_EQ(energy.at("metric"), "total_energy_kj");
+  EXPECT_EQ(energy.at("pairs"), 28);
+  EXPECT_LT(energy.at("difference"), 0.0) << "a smaller battery ends missions earlier";
+  EXPECT_LE(energy.at("lo"), energy.at("difference"));
+  for (const char* file : {"compare.txt", "differences.csv", "verdicts.csv"})
+    EXPECT_FALSE(ReadAll(fs::path(out) / file).empty()) << file;
+}
+
+TEST_F(CompareTest, ARunEqualsItself) {
+  fs::copy(Dir("usual"), Dir("again"), fs::copy_options::recursive);
+  const CommandResult result = Ed3r(fmt::format("compare {} {}/", Dir("usual"), Dir("again")));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("again: 0 of 177 claims"), std::string::npos) << result.out;
+}
+
+TEST_F(CompareTest, WhatCannotBeComparedIsSaid) {
+  const CommandResult one = Ed3r("compare " + Dir("usual"));
+  EXPECT_EQ(one.status, 2);
+  EXPECT_NE(one.err.find("at least two are needed"), std::string::npos) << one.err;
+  const CommandResult same = Ed3r(fmt::format("compare {0} {0}", Dir("usual")));
+  EXPECT_EQ(same.status, 2);
+  EXPECT_NE(same.err.find("their names must differ"), std::string::npos) << same.err;
+  const CommandResult none = Ed3r(fmt::format("compare {} {}", Dir("usual"), Dir("nowhere")));
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("nowhere"), std::string::npos) << none.err;
+}
+
+}  // namespace
+}  // namespace ed3r
