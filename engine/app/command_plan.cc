@@ -13,9 +13,10 @@
 namespace ed3r {
 namespace {
 
-// Simulated over wall seconds per core of this engine on its reference machine (2 cores of an EPYC 9xx4 server); only
-// for the estimate that `ed3r plan` prints.
-constexpr double kRealTimePerCore = 3000.0;
+// Simulated over wall seconds per core of this engine on its reference machine (2 shared cores of an EPYC server with
+// AVX2) in the two tiers of perception; only for the estimate that `ed3r plan` prints.
+constexpr double kRealTimePerCore = 10000.0;
+constexpr double kRealTimePerCoreOnPixels = 1100.0;
 // Mean length of a mission that may end early (paper: RBS).
 constexpr double kEarlyCompletionS = 280.0;
 
@@ -33,9 +34,13 @@ double ExpectedSimulatedS(const Arm& arm) {
 }
 
 double ExpectedWallS(const Stage& stage, int threads) {
-  double simulated_s = 0.0;
-  for (const Arm& arm : stage.arms) simulated_s += stage.missions * ExpectedSimulatedS(arm);
-  return simulated_s / kRealTimePerCore / threads;
+  double core_s = 0.0;
+  for (const Arm& arm : stage.arms) {
+    const bool pixels = arm.config.perception.tier == PerceptionTier::kPixels;
+    core_s +=
+        stage.missions * ExpectedSimulatedS(arm) / (pixels ? kRealTimePerCoreOnPixels : kRealTimePerCore);
+  }
+  return core_s / threads;
 }
 
 void PrintJson(const SweepPlan& plan, int threads) {
