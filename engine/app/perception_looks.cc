@@ -20,13 +20,15 @@ void AddMission(const StoredMission& mission, const Scene& scene, const Config& 
     const View view = fire.Look({{step.x_m, step.y_m, step.z_m}, step.yaw_rad, step.tilt_rad}, config.sensing,
                                 config.perception, distractors);
     looks.push_back({.quantized = step.execution == static_cast<std::int64_t>(Execution::kQuantized),
+                     .tilt_rad = step.tilt_rad,
                      .fire_share = view.fire_share,
                      .smoke_share = view.smoke_share,
                      .distractor_share = view.distractor_share,
                      .mean = step.confidence_mean,
                      .deviation = step.confidence_sd,
                      .fire_in_view_pixels = step.fire_in_view != 0,
-                     .fire_in_view_geometry = view.fire_in_view});
+                     .fire_in_view_geometry = view.fire_in_view,
+                     .held_out = mission.id.mission % 2 == 1});
   }
 }
 

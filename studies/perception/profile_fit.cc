@@ -7,68 +7,39 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "engine/core/check.h"
+#include "studies/perception/profile_judgement.h"
+#include "studies/perception/profile_model.h"
 
 namespace ed3r {
 namespace {
 
+using profile::Given, profile::Response, profile::Weights;
+
 constexpr int kMinPeriods = 50;
-constexpr int kNodes = 32;         // of Simpson's rule
-constexpr double kLogitSpan = 12;  // beyond it a logistic curve is flat and a normal density is nothing
 
-// Parameters: shared (ln w_smoke, ln w_distractor), and for each model (ln half_signal, slope, ceiling, ln sigma).
-using Weights = std::array<double, 2>;
-using Response = std::array<double, 4>;
-
-template <class T>
-T Expected(const PeriodLook& look, double threshold, const T* weights, const T* response) {
-  using std::exp, std::log;
-  const T signal =
-      look.fire_share + exp(weights[0]) * look.smoke_share + exp(weights[1]) * look.distractor_share;
-  if (!(signal > 0.0)) return T(0.0);
-  const T z = response[1] * (log(signal) - response[0]) / std::numbers::ln10;
-  const T ceiling = response[2];
-  const T sigma = exp(response[3]);
-  const T from = log(threshold / (ceiling - threshold));
-  T sum(0.0);
-  for (int i = 0; i <= kNodes; ++i) {
-    const double step = kLogitSpan / kNodes;
-    const T at = from + i * step;
-    const T u = (at - z) / sigma;
-    const T density = exp(-0.5 * u * u) / (sigma * std::sqrt(2.0 * std::numbers::pi));
-    const double weight = i == 0 || i == kNodes ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
-    sum += weight * step / 3.0 * density * ceiling / (1.0 + exp(-at));
-  }
-  // Above the last node the curve is at its ceiling: what is left of the normal distribution counts with that.
-  const T rest = (from + kLogitSpan - z) / sigma;
-  return sum + ceiling * 0.5 * erfc(rest / std::sqrt(2.0));
-}
-
+// The mean alone leaves open whether a flat response fluctuates little or a steep one much; how often a period is reliable
+// tells them apart, and is what missions live on.
 struct Residual {
   PeriodLook look;
-  double threshold;
+  Given given;
 
   template <class T>
   bool operator()(const T* weights, const T* response, T* residual) const {
-    residual[0] = Expected(look, threshold, weights, response) - look.mean;
+    residual[0] = profile::ExpectedMean(look, given, weights, response) - look.mean;
+    residual[1] = profile::ProbabilityAbove(kReliable, look, given, weights, response) -
+                  (look.mean >= kReliable ? 1.0 : 0.0);
     return true;
   }
 };
 
-Weights WeightsOf(const PerceptionConfig& p) {
-  return {std::log(p.smoke_weight / p.fire_weight), std::log(p.distractor_weight / p.fire_weight)};
-}
-
-Response ResponseOf(const ResponseConfig& r, double fire_weight) {
-  return {std::log(r.half_signal / fire_weight), r.slope, r.ceiling,
-          0.5 * std::log(r.view_sigma * r.view_sigma + r.frame_sigma * r.frame_sigma)};
-}
-
 // Spread of the logit from frame to frame, where thresholding leaves the spread of the confidences alone and the ceiling
 // does not yet bend it.
-double FrameSigma(std::span<const PeriodLook> looks, bool quantized, double ceiling, double threshold) {
+double FrameSigma(std::span<const PeriodLook> looks, bool quantized, double threshold) {
+  double ceiling = threshold;
+  for (const PeriodLook& look : looks)
+    if (look.quantized == quantized) ceiling = std::max(ceiling, look.mean);
   std::vector<double> spreads;
   for (const PeriodLook& look : looks) {
     if (look.quantized != quantized || look.mean - 3.0 * look.deviation < threshold ||
@@ -82,57 +53,24 @@ double FrameSigma(std::span<const PeriodLook> looks, bool quantized, double ceil
   return *middle;
 }
 
-double SignalOf(const PeriodLook& look, const ProfileFit& fit) {
-  return look.fire_share + fit.smoke_weight * look.smoke_share +
-         fit.distractor_weight * look.distractor_share;
-}
-
-ResponseFit Judge(std::span<const PeriodLook> looks, bool quantized, double threshold,
-                  const std::vector<double>& expected) {
-  ResponseFit fit;
-  double squares = 0.0, sum = 0.0, total = 0.0;
-  int same = 0;
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    if (looks[i].quantized != quantized) continue;
-    ++fit.periods;
-    squares += (looks[i].mean - expected[i]) * (looks[i].mean - expected[i]);
-    sum += looks[i].mean;
-    total += looks[i].mean * looks[i].mean;
-    same += (looks[i].mean >= threshold) == (expected[i] >= threshold) ? 1 : 0;
-  }
-  fit.rms_residual = std::sqrt(squares / fit.periods);
-  fit.variance_explained = 1.0 - squares / (total - sum * sum / fit.periods);
-  fit.same_decision_pct = 100.0 * same / fit.periods;
-  return fit;
-}
-
-std::vector<AgreementBand> Bands(std::span<const PeriodLook> looks, const ProfileFit& fit) {
-  std::vector<AgreementBand> bands;
-  const double edges[] = {0.0, 1e-12, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 1e3};
+// Of each model the periods with some signal that are not held out, evenly thinned: only they say anything of the response.
+std::vector<PeriodLook> LooksToFit(std::span<const PeriodLook> looks) {
+  std::vector<PeriodLook> fitted;
   for (const bool quantized : {false, true}) {
-    for (std::size_t b = 0; b + 1 < std::size(edges); ++b) {
-      AgreementBand band{quantized, edges[b], edges[b + 1]};
-      for (std::size_t i = 0; i < looks.size(); ++i) {
-        const double signal = SignalOf(looks[i], fit);
-        if (looks[i].quantized != quantized || signal < edges[b] || signal >= edges[b + 1]) continue;
-        ++band.periods;
-        band.observed += looks[i].mean;
-        band.expected += fit.expected[i];
-      }
-      if (band.periods == 0) continue;
-      band.observed /= band.periods;
-      band.expected /= band.periods;
-      bands.push_back(band);
-    }
+    std::vector<PeriodLook> telling;
+    for (const PeriodLook& look : looks)
+      if (look.quantized == quantized && !look.held_out &&
+          look.fire_share + look.smoke_share + look.distractor_share > 0.0)
+        telling.push_back(look);
+    if (telling.size() < kMinPeriods)
+      throw UserError(
+          fmt::format("{} sensing periods with fire, smoke or a distractor in view are too few for the {} "
+                      "model; needed: {}",
+                      telling.size(), quantized ? "Quantized" : "Full", kMinPeriods));
+    const std::size_t stride = (telling.size() + kMostFitted - 1) / kMostFitted;
+    for (std::size_t i = 0; i < telling.size(); i += stride) fitted.push_back(telling[i]);
   }
-  return bands;
-}
-
-// Only periods with some signal say anything about the response.
-int CountSignals(std::span<const PeriodLook> looks, bool quantized) {
-  return static_cast<int>(std::count_if(looks.begin(), looks.end(), [&](const PeriodLook& look) {
-    return look.quantized == quantized && look.fire_share + look.smoke_share + look.distractor_share > 0.0;
-  }));
+  return fitted;
 }
 
 struct Solution {
@@ -141,29 +79,33 @@ struct Solution {
   double cost = std::numeric_limits<double>::infinity();
 };
 
-void Solve(std::span<const PeriodLook> looks, double threshold, Solution& solution) {
+// Bounds of a block of parameters, into which a start outside is moved.
+template <std::size_t kCount>
+void Bound(ceres::Problem& problem, std::array<double, kCount>& block,
+           const std::array<std::array<double, 2>, kCount>& bounds) {
+  for (std::size_t i = 0; i < kCount; ++i) {
+    block[i] = std::clamp(block[i], bounds[i][0], bounds[i][1]);
+    problem.SetParameterLowerBound(block.data(), static_cast<int>(i), bounds[i][0]);
+    problem.SetParameterUpperBound(block.data(), static_cast<int>(i), bounds[i][1]);
+  }
+}
+
+void Solve(std::span<const PeriodLook> looks, const Given& full_given, const Given& quantized_given,
+           Solution& solution) {
   auto& [weights, full, quantized, cost] = solution;
   ceres::Problem problem;
-  for (const PeriodLook& look : looks) {
-    if (look.fire_share + look.smoke_share + look.distractor_share <= 0.0) continue;
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<Residual, 1, 2, 4>(new Residual{look, threshold}),
-        new ceres::HuberLoss(0.3), weights.data(), look.quantized ? quantized.data() : full.data());
-  }
-  for (const int i : {0, 1}) {
-    problem.SetParameterLowerBound(weights.data(), i, std::log(1e-4));
-    problem.SetParameterUpperBound(weights.data(), i, std::log(10.0));
-  }
-  for (Response* response : {&full, &quantized}) {
-    const std::array<std::array<double, 2>, 4> bounds = {{{std::log(1e-6), std::log(0.5)},
-                                                          {0.2, 40.0},
-                                                          {threshold + 0.05, 1.0},
-                                                          {std::log(0.05), std::log(8.0)}}};
-    for (int i = 0; i < 4; ++i) {
-      problem.SetParameterLowerBound(response->data(), i, bounds[static_cast<std::size_t>(i)][0]);
-      problem.SetParameterUpperBound(response->data(), i, bounds[static_cast<std::size_t>(i)][1]);
-    }
-  }
+  for (const PeriodLook& look : looks)
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Residual, 2, 2, 4>(
+                                 new Residual{look, look.quantized ? quantized_given : full_given}),
+                             nullptr, weights.data(), look.quantized ? quantized.data() : full.data());
+  Bound<2>(problem, weights, {{{std::log(1e-4), std::log(10.0)}, {std::log(1e-4), std::log(10.0)}}});
+  const double least_ceiling = std::max(full_given.threshold, kReliable) + 0.05;
+  for (Response* response : {&full, &quantized})
+    Bound<4>(problem, *response,
+             {{{std::log(1e-6), std::log(0.5)},
+               {0.2, 40.0},
+               {least_ceiling, 1.0},
+               {std::log(0.05), std::log(8.0)}}});
   ceres::Solver::Options options;
   options.max_num_iterations = 100;
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
@@ -176,64 +118,75 @@ void Solve(std::span<const PeriodLook> looks, double threshold, Solution& soluti
 }
 
 // A steep and a flat response can both be local minima: several starts, the least cost wins.
-Solution BestOfStarts(std::span<const PeriodLook> looks, double threshold, const PerceptionConfig& start) {
+Solution BestOfStarts(std::span<const PeriodLook> looks, const Given& full, const Given& quantized,
+                      const PerceptionConfig& start) {
   Solution best;
   for (const double slope : {3.0, 8.0}) {
     for (const double sigma : {0.7, 2.0}) {
-      Solution solution{WeightsOf(start), ResponseOf(start.full, start.fire_weight),
-                        ResponseOf(start.quantized, start.fire_weight)};
+      Solution solution{profile::WeightsOf(start), profile::ResponseOf(start.full, start.fire_weight),
+                        profile::ResponseOf(start.quantized, start.fire_weight)};
       for (Response* response : {&solution.full, &solution.quantized}) {
         (*response)[1] = slope;
         (*response)[3] = std::log(sigma);
       }
-      Solve(looks, threshold, solution);
+      Solve(looks, full, quantized, solution);
       if (solution.cost < best.cost) best = solution;
     }
   }
   return best;
 }
 
-ResponseConfig ConfigOf(const Response& r, double frame_sigma) {
-  const double sigma = std::exp(r[3]);
-  const double view_sigma = std::sqrt(std::max(0.0, sigma * sigma - frame_sigma * frame_sigma));
-  return {std::exp(r[0]), r[1], r[2], view_sigma, frame_sigma};
-}
-
 }  // namespace
 
+namespace profile {
+
+Weights WeightsOf(const PerceptionConfig& p) {
+  return {std::log(p.smoke_weight / p.fire_weight), std::log(p.distractor_weight / p.fire_weight)};
+}
+
+Response ResponseOf(const ResponseConfig& r, double fire_weight) {
+  return {std::log(r.half_signal / fire_weight), r.slope, r.ceiling, std::log(std::max(r.view_sigma, 1e-3))};
+}
+
+}  // namespace profile
+
 ProfileFit FitProfile(std::span<const PeriodLook> looks, const PerceptionConfig& start) {
-  for (const bool quantized : {false, true})
-    if (const int count = CountSignals(looks, quantized); count < kMinPeriods)
-      throw UserError(
-          fmt::format("{} sensing periods with fire, smoke or a distractor in view are too few for the {} "
-                      "model; needed: {}",
-                      count, quantized ? "Quantized" : "Full", kMinPeriods));
-  const double threshold = start.frame_threshold;
-  const auto [weights, full, quantized, cost] = BestOfStarts(looks, threshold, start);
+  if (start.frame_threshold <= 0.0 || start.frame_threshold > 0.9 || start.fire_weight <= 0.0)
+    throw UserError(
+        fmt::format("perception.frame_threshold: {:g} and perception.fire_weight: {:g} leave nothing to fit; "
+                    "allowed: a threshold above 0 and up to 0.9, a weight above 0",
+                    start.frame_threshold, start.fire_weight));
+  const std::vector<PeriodLook> fitted = LooksToFit(looks);
+  const Given full_given{start.frame_threshold, FrameSigma(fitted, false, start.frame_threshold)};
+  const Given quantized_given{start.frame_threshold, FrameSigma(fitted, true, start.frame_threshold)};
+  const auto [weights, full, quantized, cost] = BestOfStarts(fitted, full_given, quantized_given, start);
 
   ProfileFit fit;
   fit.smoke_weight = std::exp(weights[0]);
   fit.distractor_weight = std::exp(weights[1]);
-  int same_truth = 0;
-  for (const PeriodLook& look : looks) {
-    fit.expected.push_back(
-        Expected(look, threshold, weights.data(), (look.quantized ? quantized : full).data()));
-    same_truth += look.fire_in_view_pixels == look.fire_in_view_geometry ? 1 : 0;
-  }
-  fit.same_truth_pct = 100.0 * same_truth / static_cast<double>(looks.size());
-  fit.full = Judge(looks, false, threshold, fit.expected);
-  fit.quantized = Judge(looks, true, threshold, fit.expected);
-  fit.full.response = ConfigOf(full, FrameSigma(looks, false, full[2], threshold));
-  fit.quantized.response = ConfigOf(quantized, FrameSigma(looks, true, quantized[2], threshold));
-  fit.bands = Bands(looks, fit);
+  const auto config_of = [](const Response& r, const Given& given) {
+    return ResponseConfig{std::exp(r[0]), r[1], r[2], std::exp(r[3]), given.frame_sigma};
+  };
+  fit.full.response = config_of(full, full_given);
+  fit.quantized.response = config_of(quantized, quantized_given);
+  JudgeFit(looks, start, fit);
   return fit;
 }
 
 double ExpectedConfidence(const PeriodLook& look, const PerceptionConfig& perception) {
-  const Weights weights = WeightsOf(perception);
-  const Response response =
-      ResponseOf(look.quantized ? perception.quantized : perception.full, perception.fire_weight);
-  return Expected(look, perception.frame_threshold, weights.data(), response.data());
+  const Weights weights = profile::WeightsOf(perception);
+  const ResponseConfig& r = look.quantized ? perception.quantized : perception.full;
+  const Response response = profile::ResponseOf(r, perception.fire_weight);
+  return profile::ExpectedMean(look, Given{perception.frame_threshold, r.frame_sigma}, weights.data(),
+                               response.data());
+}
+
+double AlarmProbability(const PeriodLook& look, const PerceptionConfig& perception) {
+  const Weights weights = profile::WeightsOf(perception);
+  const ResponseConfig& r = look.quantized ? perception.quantized : perception.full;
+  const Response response = profile::ResponseOf(r, perception.fire_weight);
+  return profile::ProbabilityAbove(kReliable, look, Given{perception.frame_threshold, r.frame_sigma},
+                                   weights.data(), response.data());
 }
 
 }  // namespace ed3r

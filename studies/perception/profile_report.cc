@@ -10,9 +10,10 @@ const char* ModelName(bool quantized) { return quantized ? "Quantized" : "Full";
 std::string ResponseText(const char* name, const ResponseFit& fit) {
   const ResponseConfig& r = fit.response;
   return fmt::format(
-      "{:<10} {:>11.3g} {:>7.2f} {:>8.3f} {:>11.2f} {:>12.2f} {:>8} {:>6.3f} {:>10.2f} {:>9.1f}\n", name,
-      r.half_signal, r.slope, r.ceiling, r.view_sigma, r.frame_sigma, fit.periods, fit.rms_residual,
-      fit.variance_explained, fit.same_decision_pct);
+      "{:<10} {:>11.3g} {:>7.2f} {:>8.3f} {:>11.2f} {:>12.2f} {:>8} {:>6.3f} {:>10.2f} {:>8.1f} {:>9.1f} "
+      "{:>7.1f} {:>10.1f}\n",
+      name, r.half_signal, r.slope, r.ceiling, r.view_sigma, r.frame_sigma, fit.periods, fit.rms_residual,
+      fit.variance_explained, fit.same_decision_pct, fit.always_no_pct, fit.recall_pct, fit.precision_pct);
 }
 
 nlohmann::ordered_json ResponseJson(const ResponseFit& fit) {
@@ -25,7 +26,10 @@ nlohmann::ordered_json ResponseJson(const ResponseFit& fit) {
           {"periods", fit.periods},
           {"rms_residual", fit.rms_residual},
           {"variance_explained", fit.variance_explained},
-          {"same_decision_pct", fit.same_decision_pct}};
+          {"same_decision_pct", fit.same_decision_pct},
+          {"always_no_pct", fit.always_no_pct},
+          {"recall_pct", fit.recall_pct},
+          {"precision_pct", fit.precision_pct}};
 }
 
 }  // namespace
@@ -34,11 +38,16 @@ std::string ProfileFitText(const ProfileFit& fit) {
   std::string text = fmt::format(
       "Response of the fast tier fitted to what the networks said; weights against flame: smoke {:.3g}, "
       "distractors "
-      "{:.3g}\n\n{:<10} {:>11} {:>7} {:>8} {:>11} {:>12} {:>8} {:>6} {:>10} {:>9}\n",
+      "{:.3g}\n\n{:<10} {:>11} {:>7} {:>8} {:>11} {:>12} {:>8} {:>6} {:>10} {:>8} {:>9} {:>7} {:>10}\n",
       fit.smoke_weight, fit.distractor_weight, "model", "half signal", "slope", "ceiling", "view sigma",
-      "frame sigma", "periods", "RMS", "explained", "same, %");
+      "frame sigma", "periods", "RMS", "explained", "same, %", "never, %", "recall", "precision");
   text += ResponseText("Full", fit.full) + ResponseText("Quantized", fit.quantized);
-  text += fmt::format("\nBoth tiers agree on whether fire is in view in {:.1f} % of the periods.\n",
+  text +=
+      "\nPeriods of missions that were not fitted. same: profile and networks both say fire, or both not; "
+      "never: what "
+      "'never fire'\nwould reach; recall: of what the networks call fire; precision: of what the profile "
+      "calls fire.\n";
+  text += fmt::format("Both tiers agree on whether fire is in view in {:.1f} % of the periods.\n",
                       fit.same_truth_pct);
   text += fmt::format("\n{:<10} {:>22} {:>8} {:>10} {:>10}\n", "model", "signal (image share)", "periods",
                       "observed", "expected");
@@ -48,6 +57,13 @@ std::string ProfileFitText(const ProfileFit& fit) {
                             ? std::string("none")
                             : fmt::format("{:.0e} .. {:.0e}", band.signal_from, band.signal_to),
                         band.periods, band.observed, band.expected);
+  text +=
+      fmt::format("\nPeriods without fire in view that are reliable, %\n{:<16} {:>8} {:>10} {:>15} {:>19}\n",
+                  "camera tilt", "periods", "networks", "fitted profile", "configured profile");
+  for (const FalseAlarmBand& band : fit.false_alarms)
+    text += fmt::format("{:<16} {:>8} {:>10.2f} {:>15.2f} {:>19.2f}\n",
+                        fmt::format("{:.0f} .. {:.0f} deg", band.tilt_from_deg, band.tilt_to_deg),
+                        band.periods, band.networks_pct, band.fitted_pct, band.configured_pct);
   return text;
 }
 
@@ -60,9 +76,21 @@ nlohmann::ordered_json ProfileFitJson(const ProfileFit& fit) {
                      {"periods", band.periods},
                      {"observed", band.observed},
                      {"expected", band.expected}});
-  return {{"smoke_weight", fit.smoke_weight},     {"distractor_weight", fit.distractor_weight},
-          {"full", ResponseJson(fit.full)},       {"quantized", ResponseJson(fit.quantized)},
-          {"same_truth_pct", fit.same_truth_pct}, {"bands", bands}};
+  nlohmann::ordered_json alarms = nlohmann::ordered_json::array();
+  for (const FalseAlarmBand& band : fit.false_alarms)
+    alarms.push_back({{"tilt_from_deg", band.tilt_from_deg},
+                      {"tilt_to_deg", band.tilt_to_deg},
+                      {"periods", band.periods},
+                      {"networks_pct", band.networks_pct},
+                      {"fitted_profile_pct", band.fitted_pct},
+                      {"configured_profile_pct", band.configured_pct}});
+  return {{"smoke_weight", fit.smoke_weight},
+          {"distractor_weight", fit.distractor_weight},
+          {"full", ResponseJson(fit.full)},
+          {"quantized", ResponseJson(fit.quantized)},
+          {"same_truth_pct", fit.same_truth_pct},
+          {"bands", bands},
+          {"false_alarms", alarms}};
 }
 
 std::string ProfileFitYaml(const ProfileFit& fit, const std::string& made_from) {

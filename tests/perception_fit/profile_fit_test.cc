@@ -50,7 +50,7 @@ std::vector<PeriodLook> Looks(const PerceptionConfig& truth, int count) {
 
 TEST(ProfileFitTest, KnownParametersComeBack) {
   const PerceptionConfig truth = Truth();
-  const std::vector<PeriodLook> looks = Looks(truth, 6000);
+  const std::vector<PeriodLook> looks = Looks(truth, 8000);
   const ProfileFit fit = FitProfile(looks, PerceptionConfig());
   EXPECT_NEAR(std::log(fit.smoke_weight / truth.smoke_weight), 0.0, 0.15);
   EXPECT_NEAR(std::log(fit.distractor_weight / truth.distractor_weight), 0.0, 0.2);
@@ -59,9 +59,10 @@ TEST(ProfileFitTest, KnownParametersComeBack) {
     EXPECT_NEAR(std::log(fitted.response.half_signal / real.half_signal), 0.0, 0.15);
     EXPECT_NEAR(fitted.response.slope, real.slope, 0.15 * real.slope);
     EXPECT_NEAR(fitted.response.ceiling, real.ceiling, 0.02);
+    EXPECT_NEAR(fitted.response.view_sigma, real.view_sigma, 0.2 * real.view_sigma);
     EXPECT_NEAR(fitted.response.frame_sigma, real.frame_sigma, 0.15 * real.frame_sigma);
     EXPECT_GT(fitted.variance_explained, 0.8);
-    EXPECT_EQ(fitted.periods, 3000);
+    EXPECT_EQ(fitted.periods, 4000);
   }
   EXPECT_EQ(fit.same_truth_pct, 100.0);
 }
@@ -84,6 +85,79 @@ TEST(ProfileFitTest, ExpectationIsTheMeanOfTheDraws) {
   EXPECT_NEAR(ExpectedConfidence(look, truth), sum / kDraws, 0.004);
   look.fire_share = 0.0;
   EXPECT_EQ(ExpectedConfidence(look, truth), 0.0);
+}
+
+TEST(ProfileFitTest, MeansOfAFittedModelAreRightOnAverage) {
+  // Every fifth look with a signal saw nothing, for reasons that the geometry does not know.
+  std::vector<PeriodLook> looks = Looks(Truth(), 3000);
+  double observed = 0.0, expected = 0.0;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (i % 10 < 2) looks[i].mean = 0.0;
+    observed += looks[i].mean;
+  }
+  for (const double value : FitProfile(looks, PerceptionConfig()).expected) expected += value;
+  EXPECT_NEAR(expected / observed, 1.0, 0.03);
+}
+
+TEST(ProfileFitTest, FalseAlarmsAreCountedByTilt) {
+  std::vector<PeriodLook> looks = Looks(Truth(), 2000);
+  for (PeriodLook& look : looks) look.tilt_rad = 1.0;  // 57 degrees
+  // At 15 degrees the networks see fire in two of five empty pictures.
+  for (int i = 0; i < 5; ++i) looks.push_back({.tilt_rad = 0.26, .mean = i < 2 ? 0.9 : 0.0});
+  const std::vector<FalseAlarmBand> bands = FitProfile(looks, PerceptionConfig()).false_alarms;
+  ASSERT_EQ(bands.size(), 9u);
+  EXPECT_EQ(bands[1].periods, 5);
+  EXPECT_NEAR(bands[1].networks_pct, 40.0, 1e-9);
+  EXPECT_EQ(bands[1].fitted_pct, 0.0) << "nothing in view that could mislead the profile";
+  EXPECT_GT(bands[5].periods, 250);
+  EXPECT_GT(bands[5].networks_pct, 0.0) << "the distractors of these looks";
+  EXPECT_EQ(bands[8].periods, 0);
+  EXPECT_EQ(bands[8].networks_pct, 0.0);
+}
+
+TEST(ProfileFitTest, AlarmProbabilityIsTheShareOfTheDraws) {
+  const PerceptionConfig truth = Truth();
+  for (const bool quantized : {false, true}) {
+    const ResponseConfig& r = quantized ? truth.quantized : truth.full;
+    for (const double distractor_share : {0.003, 0.01, 0.03}) {
+      const PeriodLook look{.quantized = quantized, .distractor_share = distractor_share};
+      const double logit = r.slope * std::log10(truth.distractor_weight * distractor_share / r.half_signal);
+      Stream stream(3, 4, Purpose::kFrames);
+      constexpr int kDraws = 20000;
+      int reliable = 0;
+      for (int i = 0; i < kDraws; ++i) {
+        const double view = logit + r.view_sigma * stream.Normal();
+        std::vector<double> frames(33);
+        for (double& c : frames) c = r.ceiling / (1.0 + std::exp(-(view + r.frame_sigma * stream.Normal())));
+        reliable += StableConfidence(frames, truth.frame_threshold).mean >= kReliable ? 1 : 0;
+      }
+      EXPECT_NEAR(AlarmProbability(look, truth), static_cast<double>(reliable) / kDraws, 0.03)
+          << quantized << " " << distractor_share;
+    }
+  }
+}
+
+TEST(ProfileFitTest, WhatCannotBeFittedIsRefusedAndZeroWeightsAreNot) {
+  const std::vector<PeriodLook> looks = Looks(Truth(), 600);
+  PerceptionConfig start;
+  start.distractor_weight = 0.0;
+  EXPECT_GT(FitProfile(looks, start).distractor_weight, 0.01);
+  start.frame_threshold = 0.0;
+  EXPECT_THROW(FitProfile(looks, start), UserError);
+}
+
+TEST(ProfileFitTest, PeriodsHeldOutAreJudgedAndNotFitted) {
+  std::vector<PeriodLook> looks = Looks(Truth(), 2000);
+  for (std::size_t i = 0; i < looks.size(); ++i) looks[i].held_out = i % 4 >= 2;
+  const ProfileFit fit = FitProfile(looks, PerceptionConfig());
+  EXPECT_EQ(fit.full.periods, 500);
+  EXPECT_LT(fit.full.always_no_pct, fit.full.same_decision_pct);
+  std::vector<PeriodLook> spoilt = looks;
+  for (PeriodLook& look : spoilt)
+    if (look.held_out) look.mean = 0.0;
+  const ProfileFit same = FitProfile(spoilt, PerceptionConfig());
+  EXPECT_EQ(same.full.response.half_signal, fit.full.response.half_signal);
+  EXPECT_GT(same.full.rms_residual, fit.full.rms_residual);
 }
 
 TEST(ProfileFitTest, TooFewLooksAreRefused) {
