@@ -45,7 +45,9 @@ nlohmann::ordered_json JsonOf(const VariantStudy& study) {
                                    {"difference", number(d.difference)},
                                    {"lo", number(d.lo)},
                                    {"hi", number(d.hi)},
-                                   {"pairs", d.pairs}});
+                                   {"pairs", d.pairs},
+                                   {"base_networks", d.base_networks},
+                                   {"networks", d.networks}});
   for (const VerdictChange& change : study.changes)
     json["changed_verdicts"].push_back({{"claim", change.claim},
                                         {"run", change.variant},
@@ -98,7 +100,8 @@ Command AddCompare(CLI::App& program) {
   parser->add_flag("--json", options->json, "Print JSON");
   parser->footer(
       "Runs of one seed meet the same scenarios; runs of different seeds are compared as independent draws "
-      "at the same places.");
+      "at the same places. Where an arm flew with a single trained network on one side, the luck of training "
+      "is not in the interval (training.seeds).");
   return {parser, [options] { return Compare(*options); }};
 }
 

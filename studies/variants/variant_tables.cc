@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -15,8 +16,11 @@ constexpr int kArmWidth = 14, kVariantWidth = 26, kCellWidth = 26;
 
 std::string CellText(const VariantDifference& d) {
   if (std::isnan(d.difference)) return "–";
-  const bool clear = d.lo > 0.0 || d.hi < 0.0;
-  return fmt::format("{:+.1f}{} [{:+.1f}, {:+.1f}]", d.difference, clear ? "*" : "", d.lo, d.hi);
+  return fmt::format("{:+.1f}{} [{:+.1f}, {:+.1f}]", d.difference,
+                     d.Certain()      ? "*"
+                     : d.OneNetwork() ? "?"
+                                      : "",
+                     d.lo, d.hi);
 }
 
 std::string DifferenceTable(const VariantStudy& study) {
@@ -37,6 +41,10 @@ std::string DifferenceTable(const VariantStudy& study) {
       text += Pad(CellText(study.differences[i + m]), kCellWidth, Align::kRight);
     text += "\n";
   }
+  if (std::any_of(study.differences.begin(), study.differences.end(),
+                  [](const VariantDifference& d) { return d.OneNetwork(); }))
+    text += Wrap("one trained network on a side: the luck of training is not in the interval.", "? ",
+                 kTerminalWidth);
   return text;
 }
 
@@ -46,15 +54,15 @@ std::string ChangeTable(const VariantStudy& study) {
       fmt::format("\nClaims of the paper judged otherwise than under '{}'\n", study.variants[0]);
   for (std::size_t v = 1; v < study.variants.size(); ++v) {
     std::string line;
-    int count = 0, undecided = 0;
+    int count = 0, contradictions = 0;
     for (const VerdictChange& change : study.changes) {
       if (change.variant != study.variants[v]) continue;
       line += fmt::format("{}{}: {} -> {}", count++ > 0 ? "; " : "", change.claim, NameOf(change.base),
                           NameOf(change.here));
-      undecided += change.Undecided() ? 1 : 0;
+      contradictions += change.Contradicts() ? 1 : 0;
     }
-    text += fmt::format("{}: {} of {} claims, {} of them from or to 'not decidable'\n", study.variants[v],
-                        count, study.verdicts.front().claims.size(), undecided);
+    text += fmt::format("{}: {} of {} claims, {} of them between 'holds' and 'differs'\n", study.variants[v],
+                        count, study.verdicts.front().claims.size(), contradictions);
     if (count > 0) text += Wrap(line, "  ", kTerminalWidth);
   }
   return text;
@@ -68,10 +76,10 @@ std::string VariantText(const VariantStudy& study) {
 }
 
 std::string DifferenceCsv(const VariantStudy& study) {
-  std::string csv = "arm,variant,metric,base,difference,lo,hi,pairs\n";
+  std::string csv = "arm,variant,metric,base,difference,lo,hi,pairs,base_networks,networks\n";
   for (const VariantDifference& d : study.differences)
-    csv += fmt::format("{},{},{},{},{},{},{},{}\n", CsvField(d.arm), CsvField(d.variant), d.metric, d.base,
-                       d.difference, d.lo, d.hi, d.pairs);
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", CsvField(d.arm), CsvField(d.variant), d.metric,
+                       d.base, d.difference, d.lo, d.hi, d.pairs, d.base_networks, d.networks);
   return csv;
 }
 

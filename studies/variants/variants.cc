@@ -1,6 +1,8 @@
 #include "studies/variants/variants.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 
 #include "studies/metrics/definitions.h"
@@ -20,10 +22,10 @@ double ValueOf(const MissionRecord& mission, const MetricDefinition& metric) {
   return metric.scale * metric.part(mission) / metric.whole(mission);
 }
 
-// What each scenario that both flew says, by the network that flew the first.
+// What the scenarios that both flew say. A network's values are those of the pairs that it flew.
 struct Pairs {
   std::vector<double> base, difference;
-  std::map<std::int64_t, std::vector<double>> by_network;
+  std::map<std::int64_t, std::vector<double>> base_by_network, other_by_network, difference_by_network;
 };
 
 Pairs PairsOf(const ArmData& base, const ArmData& other, const MetricDefinition& metric) {
@@ -33,9 +35,14 @@ Pairs PairsOf(const ArmData& base, const ArmData& other, const MetricDefinition&
   for (const MissionRecord& mission : base.missions) {
     const auto found = others.find(mission.scenario);
     if (found == others.end()) continue;
-    pairs.base.push_back(ValueOf(mission, metric));
-    pairs.difference.push_back(ValueOf(*found->second, metric) - pairs.base.back());
-    pairs.by_network[mission.network].push_back(pairs.difference.back());
+    const double before = ValueOf(mission, metric), after = ValueOf(*found->second, metric);
+    pairs.base.push_back(before);
+    pairs.difference.push_back(after - before);
+    if (mission.network >= 0) {
+      pairs.base_by_network[mission.network].push_back(before);
+      pairs.difference_by_network[mission.network].push_back(after - before);
+    }
+    if (found->second->network >= 0) pairs.other_by_network[found->second->network].push_back(after);
   }
   return pairs;
 }
@@ -46,6 +53,38 @@ double Mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
+std::vector<double> MeansOf(const std::map<std::int64_t, std::vector<double>>& by_network) {
+  std::vector<double> means;
+  for (const auto& [network, values] : by_network) means.push_back(Mean(values));
+  return means;
+}
+
+// Variance of the mean of a sample of at least two.
+double VarianceOfMean(const std::vector<double>& sample) {
+  const double mean = Mean(sample), n = static_cast<double>(sample.size());
+  double squares = 0.0;
+  for (const double x : sample) squares += (x - mean) * (x - mean);
+  return squares / (n * (n - 1.0));
+}
+
+// Welch's t between two sets of networks, around a difference.
+Interval WelchInterval(const std::vector<double>& a, const std::vector<double>& b, double difference) {
+  const double va = VarianceOfMean(a), vb = VarianceOfMean(b), v = va + vb;
+  if (v <= 0.0) return {difference, difference};
+  const double degrees =
+      v * v / (va * va / static_cast<double>(a.size() - 1) + vb * vb / static_cast<double>(b.size() - 1));
+  const double half = StudentT95(degrees) * std::sqrt(v);
+  return {difference - half, difference + half};
+}
+
+// Of the networks' luck; does not exist where one of the two flew fewer than two.
+Interval NetworkInterval(const Pairs& pairs, double difference) {
+  const std::vector<double> base = MeansOf(pairs.base_by_network), other = MeansOf(pairs.other_by_network);
+  if (base.size() < 2 || other.size() < 2) return {};
+  if (base.size() == other.size()) return MeanInterval(MeansOf(pairs.difference_by_network));
+  return WelchInterval(base, other, difference);
+}
+
 VariantDifference Compare(const ArmData& base, const ArmData& other, const std::string& variant,
                           const char* metric) {
   const Pairs pairs = PairsOf(base, other, MetricDefinitions()[MetricIndex(metric)]);
@@ -53,13 +92,11 @@ VariantDifference Compare(const ArmData& base, const ArmData& other, const std::
   result.pairs = static_cast<int>(pairs.difference.size());
   result.base = pairs.base.empty() ? std::numeric_limits<double>::quiet_NaN() : Mean(pairs.base);
   result.difference = pairs.base.empty() ? result.base : Mean(pairs.difference);
+  result.base_networks = static_cast<int>(pairs.base_by_network.size());
+  result.networks = static_cast<int>(pairs.other_by_network.size());
   Interval interval = MeanInterval(pairs.difference);
-  if (pairs.by_network.size() > 1) {
-    std::vector<double> means;
-    for (const auto& [network, values] : pairs.by_network) means.push_back(Mean(values));
-    const Interval networks = MeanInterval(means);
+  if (const Interval networks = NetworkInterval(pairs, result.difference); networks.Exists())
     interval = {std::min(interval.lo, networks.lo), std::max(interval.hi, networks.hi)};
-  }
   result.lo = interval.lo;
   result.hi = interval.hi;
   return result;
@@ -93,6 +130,11 @@ std::vector<ArmData> ArmsOfVariant(std::span<const ArmData> arms, const std::str
     own.back().name.resize(At(arm.name));
   }
   return own;
+}
+
+bool VerdictChange::Contradicts() const {
+  const auto holds = [](Verdict v) { return v == Verdict::kReproduced || v == Verdict::kDirectionHolds; };
+  return (holds(base) && here == Verdict::kDiffers) || (base == Verdict::kDiffers && holds(here));
 }
 
 std::vector<ArmData> AsVariant(std::vector<ArmData> arms, const std::string& variant) {

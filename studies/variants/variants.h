@@ -18,12 +18,18 @@ namespace ed3r {
 inline constexpr const char* kComparedMetrics[] = {"total_energy_kj", "msr_pct", "duration_mean_min"};
 
 // One metric of one arm in a variant minus the same in the first variant: mean over scenarios that both flew, with a 95 %
-// interval (Student's t; where several networks flew, at least as wide as t over the networks' own differences).
+// interval (Student's t). Where both flew the same number of trained networks, more than one, it is at least as wide as t over
+// the networks' own differences; where they flew different numbers, as Welch's t between the two sets of networks. With a
+// single network on either side the luck of training is not in the interval, and Certain() never holds.
 struct VariantDifference {
   std::string arm, variant, metric;
   double base = 0.0;  // the metric's mean in the first variant, over the pairs
   double difference = 0.0, lo = 0.0, hi = 0.0;
   int pairs = 0;
+  int base_networks = 0, networks = 0;  // trained ones that flew the pairs; 0 for an arm that asks none
+
+  bool OneNetwork() const { return base_networks == 1 || networks == 1; }
+  bool Certain() const { return (lo > 0.0 || hi < 0.0) && !OneNetwork(); }
 };
 
 // A claim of the paper that is judged otherwise than in the first variant.
@@ -31,8 +37,8 @@ struct VerdictChange {
   std::string claim, variant;
   Verdict base, here;
 
-  // One of the two says that the data cannot decide; otherwise the verdicts contradict each other.
-  bool Undecided() const { return base == Verdict::kNotDecidable || here == Verdict::kNotDecidable; }
+  // One run has the claim hold, in size or at least in direction, the other has it differ.
+  bool Contradicts() const;
 };
 
 struct VariantStudy {
@@ -58,7 +64,7 @@ VariantStudy CompareVariants(std::span<const ArmData> arms);
 // Two tables, differences and changed verdicts, in lines of at most kTerminalWidth characters; empty without variants.
 std::string VariantText(const VariantStudy& study);
 
-// Columns arm,variant,metric,base,difference,lo,hi,pairs.
+// Columns arm,variant,metric,base,difference,lo,hi,pairs,base_networks,networks.
 std::string DifferenceCsv(const VariantStudy& study);
 
 // Columns claim,VARIANT...: the verdict of every claim in every variant.

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "studies/statistics/intervals.h"
+
 namespace ed3r {
 namespace {
 
@@ -51,7 +55,9 @@ TEST(VariantsTest, DifferencesArePairedByScenario) {
   EXPECT_LT(success.lo, -50.0);
   EXPECT_GT(success.hi, -50.0);
   EXPECT_NE(VariantText(study).find("rbs"), std::string::npos);
-  EXPECT_EQ(DifferenceCsv(study).substr(0, 50), "arm,variant,metric,base,difference,lo,hi,pairs\nrbs");
+  EXPECT_TRUE(energy.Certain()) << "a rule-based arm asks no network";
+  EXPECT_EQ(DifferenceCsv(study).substr(0, 73),
+            "arm,variant,metric,base,difference,lo,hi,pairs,base_networks,networks\nrbs");
 }
 
 TEST(VariantsTest, ScenariosThatOneDidNotFlyAreLeftOut) {
@@ -82,10 +88,48 @@ TEST(VariantsTest, RunsFlownApartAreComparedAsVariants) {
   EXPECT_NEAR(study.differences.at(0).difference, 6.0, 1e-12);
 }
 
-TEST(VariantsTest, AChangeFromOrToUndecidedIsNoContradiction) {
-  EXPECT_TRUE((VerdictChange{"C1", "b", Verdict::kNotDecidable, Verdict::kDiffers}.Undecided()));
-  EXPECT_TRUE((VerdictChange{"C1", "b", Verdict::kReproduced, Verdict::kNotDecidable}.Undecided()));
-  EXPECT_FALSE((VerdictChange{"C1", "b", Verdict::kReproduced, Verdict::kDiffers}.Undecided()));
+TEST(VariantsTest, OnlyHoldingAndDifferingContradict) {
+  const auto contradicts = [](Verdict a, Verdict b) { return VerdictChange{"C1", "b", a, b}.Contradicts(); };
+  EXPECT_TRUE(contradicts(Verdict::kReproduced, Verdict::kDiffers));
+  EXPECT_TRUE(contradicts(Verdict::kDiffers, Verdict::kDirectionHolds));
+  EXPECT_FALSE(contradicts(Verdict::kReproduced, Verdict::kDirectionHolds));
+  EXPECT_FALSE(contradicts(Verdict::kReproduced, Verdict::kNotDecidable));
+  EXPECT_FALSE(contradicts(Verdict::kDiffers, Verdict::kNotMeasured));
+}
+
+// 100 missions of `networks` networks, whose means lie 4 kJ apart.
+ArmData FlownBy(const std::string& name, int networks, double energy_kj) {
+  ArmData arm{"online", name, {}};
+  for (int i = 0; i < 100; ++i)
+    arm.missions.push_back(MissionOf(i, energy_kj + 4.0 * (i % networks), Outcome::kSuccess, i % networks));
+  return arm;
+}
+
+TEST(VariantsTest, ASingleNetworkMakesNothingCertain) {
+  for (const auto& [base, other] : {std::pair{1, 1}, std::pair{1, 3}, std::pair{3, 1}}) {
+    const VariantStudy study =
+        CompareVariants(std::vector{FlownBy("ed3r-75@a", base, 20), FlownBy("ed3r-75@b", other, 60)});
+    const VariantDifference& energy = study.differences[0];
+    EXPECT_GT(energy.lo, 0.0);
+    EXPECT_FALSE(energy.Certain());
+    const std::string text = VariantText(study);
+    EXPECT_NE(text.find("? one trained network"), std::string::npos) << text;
+    EXPECT_EQ(text.find("* ["), std::string::npos) << text;
+  }
+}
+
+TEST(VariantsTest, DifferentNumbersOfNetworksAreComparedByWelch) {
+  const ArmData two = FlownBy("ed3r-75@a", 2, 20), five = FlownBy("ed3r-75@b", 5, 20);
+  const auto width = [](const ArmData& a, const ArmData& b) {
+    const VariantDifference energy = CompareVariants(std::vector{a, b}).differences[0];
+    return energy.hi - energy.lo;
+  };
+  ArmData first = five, second = two;
+  first.name = "ed3r-75@a";
+  second.name = "ed3r-75@b";
+  EXPECT_NEAR(width(two, five), width(first, second), 1e-9) << "whichever comes first";
+  // Means 20, 24 and 20 .. 36: variances of their means 4 and 8, Welch's degrees 144 / (16 / 1 + 64 / 4) = 4.5.
+  EXPECT_NEAR(width(two, five), 2.0 * StudentT95(4.5) * std::sqrt(12.0), 1e-9);
 }
 
 TEST(VariantsTest, AStudyWithoutVariantsHasNone) {
