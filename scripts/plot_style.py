@@ -10,6 +10,7 @@ except ImportError:
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
 
 INK = "#1d2327"
 FAINT = "#68737b"
@@ -26,15 +27,20 @@ OTHER_COLOURS = ("#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9
 
 # What energy is spent on, how timesteps are processed, how missions end.
 SUCCESS, FALSE_POSITIVE, DEPLETED = "#4c9f8a", "#e2a33c", "#8d8d96"
+SUCCESS_DARK = "#1f6b58"
+# As the column `outcome` numbers them: name, metric, colour, marker.
+OUTCOMES = (("success", "msr_pct", SUCCESS, "o"), ("false positive", "fp_pct", FALSE_POSITIVE, "^"),
+            ("battery depleted", "bd_pct", DEPLETED, "s"))
 OFFLOADED, FULL, QUANTIZED = "#7b6ba8", "#3f88b5", "#a6cfe3"
 PAPER = dict(marker="D", mfc="white", mec=INK, mew=1.1, ls="none", ms=5.5, zorder=6)
 
-WIDTH_IN = 10.5
+WIDTH_IN = 9.0  # with these sizes of letters, that half a page still holds
+SMALL, TINY = 9.0, 8.0
 
 
 def use_style():
     plt.rcParams.update({
-        "font.size": 9.5, "axes.titlesize": 10, "axes.labelsize": 9.5, "axes.edgecolor": FAINT, "axes.labelcolor": INK,
+        "font.size": 10.5, "axes.titlesize": 10.5, "axes.labelsize": 10.5, "legend.fontsize": 9.5, "axes.edgecolor": FAINT, "axes.labelcolor": INK,
         "text.color": INK, "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False, "axes.spines.right": False,
         "axes.axisbelow": True, "grid.color": GRID, "grid.linewidth": 0.8, "axes.titlelocation": "left",
         "legend.frameon": False, "svg.hashsalt": "ed3r", "svg.fonttype": "path", "figure.constrained_layout.use": False,
@@ -75,3 +81,24 @@ def shorten_labels(arms):
 
 def widest_line(label):
     return max(len(line) for line in label.split("\n"))
+
+
+def mean_key(label="ours, 95 % interval"):
+    return Line2D([], [], marker="o", ms=6, lw=2.4, color=FAINT, label=label)
+
+
+def paper_key(label="paper's value"):
+    return Line2D([], [], label=label, **PAPER)
+
+
+def key_below(canvas, handles, note="", columns=None):
+    """The legend of a whole figure, and a line that says how to read it, below all that is drawn."""
+    canvas.draw_without_rendering()
+    height = canvas.get_figheight()
+    bottom = canvas.get_tightbbox(canvas.canvas.get_renderer()).y0 / height
+    columns = columns or len(handles)
+    lines = -(-len(handles) // columns)
+    canvas.legend(handles=handles, loc="upper center", ncol=columns, bbox_to_anchor=(0.5, bottom - 0.07 / height),
+                  borderaxespad=0, columnspacing=1.4, handletextpad=0.5)
+    if note:
+        canvas.text(0.5, bottom - (0.12 + 0.22 * lines) / height, note, ha="center", va="top", fontsize=SMALL, color=FAINT)

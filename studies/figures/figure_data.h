@@ -12,7 +12,8 @@
 //     metrics         as in report.json: METRIC: {mean, lo, hi, n, paper}, 95 % intervals
 //     per_mission     columns of equal length, in mission order: see `units`; null is "none"
 //     sites           list: {site, known, missions, success_pct, lo, hi, false_positive_pct, depleted_pct}
-//     known_sites, unseen_sites    the same, pooled; null without missions
+//                     intervals as in the tables (the luck of training included), null where a site has one mission
+//     known_sites, unseen_sites    the same, pooled: the report's generalisation; null without missions
 //     convergence     METRIC: {missions: [n...], half_width: [...], half_width_missions: [...]}: of the 95 % interval
 //                     that the first n missions give, with and without the luck of training (studies/claims/convergence.h)
 //   figures           list: {id, kind, title, caption, arms: [key...], warmups: [key...]}: see figure_list.h

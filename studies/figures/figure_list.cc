@@ -112,9 +112,11 @@ void AddGroupFigures(const Group& group, std::span<const ArmData> arms, std::spa
                      std::vector<FigureSpec>& figures) {
   figures.push_back(
       {"overview-" + group.id, "overview", group.title + ": performance overview",
-       "Every point is a mission: its energy, its mean confidence over reliable timesteps, and how well the "
-       "networks foresaw its rewards. Open points ended with an empty battery. Lines are means over all "
-       "missions with 95 % intervals; diamonds are the paper's values." +
+       "Every point is a mission, in the order of their numbers from left to right: its energy, its mean "
+       "confidence over reliable timesteps, and how well the networks foresaw its rewards. Colour and shape "
+       "tell how it ended. A mission without any reliable timestep has no confidence and is only counted, "
+       "likewise one without predictions. Lines are means over all missions that have a value, with 95 % "
+       "intervals; diamonds are the paper's values." +
            Counterpart(group, "performance overview"),
        group.arms, WarmupsOf(group.arms, arms, plans)});
   figures.push_back(
@@ -123,7 +125,8 @@ void AddGroupFigures(const Group& group, std::span<const ArmData> arms, std::spa
        group.title + ": where the energy goes, how missions end",
        "Mean energy of a mission by what it was spent on (movement includes hovering while the robot senses, "
        "computes and transmits), the outcomes of all missions, and the share of energy that went into failed "
-       "ones. Whiskers hold 95 %; diamonds are the paper's values." +
+       "ones. Whiskers are 95 % intervals; diamonds are the paper's values. Of the outcomes only success has "
+       "them, in the lane below each bar." +
            Counterpart(group, "performance insights"),
        group.arms,
        {}});
@@ -132,8 +135,9 @@ void AddGroupFigures(const Group& group, std::span<const ArmData> arms, std::spa
        "decisions",
        group.title + ": decisions of the robot, durations",
        "Where and with which model the timesteps were processed, how long missions take on average, and the "
-       "share of missions that have ended by a given time; the dotted line is the 10-minute window. Diamonds "
-       "are the paper's values." +
+       "share of missions that have ended by a given time; the dotted line is the 10-minute window. Whiskers "
+       "are 95 % intervals; diamonds are the paper's values. Those below the bars mark where parts end, "
+       "counted from the left: what was offloaded, and all that the Full model processed." +
            Counterpart(group, "decision-making figure"),
        group.arms,
        {}});
@@ -147,17 +151,19 @@ void AddRunFigures(std::span<const ArmData> arms, const Indices& drawn, std::siz
          "pareto",
          "Energy against success",
          "Each point is an arm: mean energy of a mission and mission success rate, with 95 % intervals on "
-         "both axes. Up and left is better; the line joins the arms that no other beats in both. Diamonds "
-         "are the paper's values, tied to ours. Counterpart of the paper's Pareto figure.",
+         "both axes. Up and left is better; the dashed line joins the arms whose means no other beats in "
+         "both, and is as uncertain as they are. Diamonds are the paper's values, tied to ours by dotted "
+         "lines; an arm without one has no success rate in the paper. Counterpart of the paper's Pareto "
+         "figure.",
          drawn,
          {}});
   figures.push_back(
       {"sites",
        "sites",
        "Success by fire site",
-       "Share of missions at each fire site that ended in success. The warm-up had seen the sites on the "
-       "left; those on the right are new to the networks. The columns at the end pool them, with 95 % "
-       "intervals.",
+       "Mission success rate (MSR) at each fire site. The warm-up had seen the sites on the left; those on "
+       "the right are new to the networks. The columns at the end pool them, with 95 % intervals, as the "
+       "report's table of generalisation does. Under each site: its missions per arm.",
        drawn,
        {}});
   if (shown_missions > 0)
@@ -166,7 +172,8 @@ void AddRunFigures(std::span<const ArmData> arms, const Indices& drawn, std::siz
          "map",
          "Missions seen from above",
          "For each outcome the mission of the median duration. Dots are timesteps, coloured by their stable "
-         "confidence score; RC is the base station of the remote controller.",
+         "confidence score; arrows on the path point the way of flight; RC is the base station of the remote "
+         "controller. The ground is shaded as if lit from the north-west.",
          {},
          {}});
   Indices long_enough;
@@ -176,11 +183,11 @@ void AddRunFigures(std::span<const ArmData> arms, const Indices& drawn, std::siz
     figures.push_back({"convergence",
                        "convergence",
                        "How sure after how many missions",
-                       "Half the width of the 95 % interval of mean energy and of the success rate, computed "
-                       "from the first n missions "
-                       "of each arm. Dashed: over missions alone, which falls as one over the square root of "
-                       "n (grey). Solid: with the "
-                       "luck of training, which more missions of the same networks do not average out.",
+                       "Half the width of the 95 % interval of mean energy and of the success rate, from the "
+                       "first n missions of each arm; thin grey lines are the other arms. Dashed: over "
+                       "missions alone, which falls as one over the square root of n (the grey band, "
+                       "through the typical arm). Solid: with the luck of training, which more missions of "
+                       "the same networks do not average out.",
                        long_enough,
                        {}});
 }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "studies/statistics/intervals.h"
+#include "studies/metrics/metrics.h"
 
 namespace ed3r {
 namespace {
@@ -66,29 +66,17 @@ Json LookForward(const ArmData& arm) {
   return column;
 }
 
-struct Outcomes {
-  std::int64_t missions = 0, successes = 0, false_positives = 0, depleted = 0;
-
-  void Add(const MissionRecord& m) {
-    ++missions;
-    successes += m.outcome == static_cast<std::int64_t>(Outcome::kSuccess);
-    false_positives += m.outcome == static_cast<std::int64_t>(Outcome::kFalsePositive);
-    depleted += m.outcome == static_cast<std::int64_t>(Outcome::kBatteryDepleted);
-  }
-
-  Json Shares() const {
-    const auto share = [this](std::int64_t events) {
-      return Rounded(100 * static_cast<double>(events) / static_cast<double>(missions));
-    };
-    const Interval interval = RateInterval(successes, missions);
-    return {{"missions", missions},
-            {"success_pct", share(successes)},
-            {"lo", Rounded(100 * interval.lo)},
-            {"hi", Rounded(100 * interval.hi)},
-            {"false_positive_pct", share(false_positives)},
-            {"depleted_pct", share(depleted)}};
-  }
-};
+// How these missions ended, with the tables' interval of success: it includes the luck of training.
+Json Outcomes(const ArmData& arm) {
+  const ArmMetrics metrics = ComputeMetrics(arm);
+  const MetricValue& success = metrics["msr_pct"];
+  return {{"missions", metrics.missions},
+          {"success_pct", Rounded(success.value)},
+          {"lo", Rounded(success.lo)},
+          {"hi", Rounded(success.hi)},
+          {"false_positive_pct", Rounded(metrics["fp_pct"].value)},
+          {"depleted_pct", Rounded(metrics["bd_pct"].value)}};
+}
 
 }  // namespace
 
@@ -119,26 +107,21 @@ Json MissionColumns(const ArmData& arm) {
 }
 
 Json SiteSuccess(const ArmData& arm) {
-  std::map<std::int64_t, std::pair<bool, Outcomes>> sites;
-  for (const MissionRecord& mission : arm.missions) {
-    auto& [known, outcomes] = sites[mission.site];
-    known = mission.site_known != 0;
-    outcomes.Add(mission);
-  }
+  std::map<std::int64_t, ArmData> sites;
+  for (const MissionRecord& mission : arm.missions) sites[mission.site].missions.push_back(mission);
   Json list = Json::array();
-  for (const auto& [site, entry] : sites) {
-    Json json = {{"site", site}, {"known", entry.first}};
-    json.update(entry.second.Shares());
+  for (const auto& [site, flown] : sites) {
+    Json json = {{"site", site}, {"known", flown.missions.back().site_known != 0}};
+    json.update(Outcomes(flown));
     list.push_back(json);
   }
   return list;
 }
 
 Json PooledSuccess(const ArmData& arm, bool known) {
-  Outcomes outcomes;
-  for (const MissionRecord& mission : arm.missions)
-    if ((mission.site_known != 0) == known) outcomes.Add(mission);
-  return outcomes.missions == 0 ? Json(nullptr) : outcomes.Shares();
+  const KnownUnseen sites = Split(arm, SplitBy::kSite);
+  const ArmData& flown = known ? sites.known : sites.unseen;
+  return flown.missions.empty() ? Json(nullptr) : Outcomes(flown);
 }
 
 Json ConvergenceJson(const ArmData& arm, std::span<const ConvergencePoint> points) {

@@ -15,7 +15,7 @@ nlohmann::ordered_json MissionColumns(const ArmData& arm);
 // One entry per site that was flown, by number; known ones as the missions say.
 nlohmann::ordered_json SiteSuccess(const ArmData& arm);
 
-// The missions of all known (or all unseen) sites as one; null without any.
+// The missions of all known (or all unseen) sites as one, equal to the report's generalisation; null without any.
 nlohmann::ordered_json PooledSuccess(const ArmData& arm, bool known);
 
 // The points of this arm.

@@ -32,6 +32,22 @@ nlohmann::ordered_json FigureData(const Report& report, const RunResults& result
                          .scene_note = found.why_not});
 }
 
+// Titles and captions for whoever meets the pictures without index.html.
+std::string CaptionsPage(const std::string& name, const nlohmann::ordered_json& listed,
+                         const fs::path& folder) {
+  std::string page = fmt::format(
+      "# Figures of {}\n\n`ed3r report` draws them from data.json, which it writes beside them.\n", name);
+  int number = 0;
+  for (const auto& figure : listed) {
+    const std::string id = figure.at("id"), title = figure.at("title"), caption = figure.at("caption");
+    page += fmt::format("\n## Figure {}. {}\n\n", ++number, title);
+    page += fs::exists(folder / (id + ".png")) ? fmt::format("![{}]({}.png)\n\n", title, id)
+                                               : fmt::format("`{}`, not drawn.\n\n", id);
+    page += caption + '\n';
+  }
+  return page;
+}
+
 // Pictures of an earlier report would be taken for this one's.
 void RemovePictures(const fs::path& folder) {
   std::error_code error;
@@ -61,6 +77,7 @@ FolderResult WriteReportFolder(const Report& report, const RunResults& results,
   nlohmann::ordered_json drawn = nlohmann::ordered_json::array();
   for (const auto& figure : data.at("figures"))
     if (fs::exists(figures / (figure.at("id").get<std::string>() + ".png"))) drawn.push_back(figure);
+  WriteWhole(figures / "README.md", CaptionsPage(results.name, data.at("figures"), figures));
   result.figures = static_cast<int>(drawn.size());
   const std::string note = result.plot_error.empty() ? result.note : "drawing failed: " + result.plot_error;
   const Provenance provenance = ReadProvenance(options.dir);

@@ -20,9 +20,10 @@ struct FolderResult {
   std::string plot_error;  // one line where drawing failed; the rest is there
 };
 
-// Writes what WriteReport does, manifest.json (provenance.h), figures/data.json (see studies/figures/figure_data.h), figures/ID.png and .svg, and
-// index.html. Pictures that an earlier report left and this one does not make are removed. Throws UserError where the
-// run cannot be read or the folder not be written.
+// Writes what WriteReport does, manifest.json (provenance.h), figures/data.json (studies/figures/figure_data.h),
+// figures/ID.png and .svg, figures/README.md with the title and caption of every figure, and index.html. Pictures that
+// an earlier report left and this one does not make are removed. Throws UserError where the run cannot be read or the
+// folder not be written.
 FolderResult WriteReportFolder(const Report& report, const RunResults& results, const FolderOptions& options);
 
 }  // namespace ed3r

@@ -51,13 +51,17 @@ TEST_F(ReportTest, DrawsWhatItsDataList) {
   EXPECT_EQ(result.err, "");
   EXPECT_NE(result.out.find(Out().string() + ": index.html"), std::string::npos);
   const auto data = nlohmann::json::parse(ReadAll(Out() / "figures" / "data.json"));
-  const std::string page = ReadAll(Out() / "index.html");
+  const std::string page = ReadAll(Out() / "index.html"), captions = ReadAll(Out() / "figures" / "README.md");
   ASSERT_EQ(data.at("figures").size(), 5u);  // overview, insights, decisions, sites, map
   for (const auto& figure : data.at("figures")) {
     const std::string id = figure.at("id");
     EXPECT_TRUE(ReadAll(Out() / "figures" / (id + ".png")).starts_with("\x89PNG")) << id;
     EXPECT_NE(ReadAll(Out() / "figures" / (id + ".svg")).find("<svg"), std::string::npos) << id;
     EXPECT_NE(page.find("src=\"figures/" + id + ".png\""), std::string::npos) << id;
+    EXPECT_NE(captions.find("](" + id + ".png)\n\n" + figure.at("caption").get<std::string>() + '\n'),
+              std::string::npos)
+        << id;
+    EXPECT_NE(captions.find(". " + figure.at("title").get<std::string>() + '\n'), std::string::npos) << id;
   }
   ASSERT_FALSE(data.at("world").is_null()) << data.at("world_note");
   EXPECT_FALSE(fs::exists(Out() / "figures" / "plot.log"));
@@ -69,9 +73,10 @@ TEST_F(ReportTest, WithoutFiguresWritesAllElse) {
   EXPECT_EQ(result.err, "note: figures not drawn (--no-figures)\n");
   for (const char* file :
        {"index.html", "report.txt", "report.json", "metrics.csv", "generalisation.csv", "tables/arms.md",
-        "tables/arms.tex", "tables/arms.csv", "tables/arms.json", "figures/data.json"})
+        "tables/arms.tex", "tables/arms.csv", "tables/arms.json", "figures/data.json", "figures/README.md"})
     EXPECT_GT(ReadAll(Out() / file).size(), 0u) << file;
   EXPECT_NE(ReadAll(Out() / "index.html").find("figures not drawn"), std::string::npos);
+  EXPECT_EQ(ReadAll(Out() / "figures" / "README.md").find(".png"), std::string::npos);
 }
 
 TEST_F(ReportTest, APythonThatIsMissingIsANote) {

@@ -4,6 +4,7 @@
 
 #include "studies/figures/figure_data.h"
 #include "studies/figures/mission_columns.h"
+#include "studies/tables/result_table.h"
 #include "tests/studies/five_missions.h"
 
 namespace ed3r {
@@ -153,6 +154,31 @@ TEST(FigureDataTest, SitesAddUpToTheirPools) {
   EXPECT_EQ(PooledSuccess(arm, false).at("missions"), 3);
   for (MissionRecord& mission : arm.missions) mission.site_known = 1;
   EXPECT_TRUE(PooledSuccess(arm, false).is_null());
+}
+
+// With the luck of training: two networks that disagree make intervals wider than missions alone do.
+TEST(FigureDataTest, PoolsAreTheReportsGeneralisation) {
+  ArmData arm = Arm("ed3r-75");
+  const MissionRecord success = arm.missions[0], depleted = arm.missions[3];
+  arm.missions.clear();
+  for (int i = 0; i < 40; ++i) {
+    arm.missions.push_back(i % 4 == 3 || (i % 4 == 1 && i < 20) ? depleted : success);
+    arm.missions.back().site_known = i % 8 < 4;
+    arm.missions.back().network = i % 2;
+  }
+  const Generalisation expected = ComputeGeneralisation(arm);
+  for (const bool known : {true, false}) {
+    const auto pooled = PooledSuccess(arm, known);
+    const ArmMetrics& metrics = known ? expected.known_sites : expected.unseen_sites;
+    EXPECT_EQ(pooled.at("missions"), metrics.missions);
+    EXPECT_EQ(pooled.at("success_pct"), Rounded(metrics["msr_pct"].value));
+    EXPECT_EQ(pooled.at("lo"), Rounded(metrics["msr_pct"].lo));
+    EXPECT_EQ(pooled.at("hi"), Rounded(metrics["msr_pct"].hi));
+    EXPECT_EQ(pooled.at("depleted_pct"), Rounded(metrics["bd_pct"].value));
+    ArmData alone = known ? Split(arm, SplitBy::kSite).known : Split(arm, SplitBy::kSite).unseen;
+    for (MissionRecord& mission : alone.missions) mission.network = 0;
+    EXPECT_LT(pooled.at("lo").get<double>(), ComputeMetrics(alone)["msr_pct"].lo);
+  }
 }
 
 TEST(FigureDataTest, ConvergenceIsOfItsArm) {
