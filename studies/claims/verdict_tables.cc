@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kIdWidth = 5, kClaimWidth = 45, kPaperWidth = 8, kOursWidth = 25, kPWidth = 7,
+constexpr int kIdWidth = 5, kClaimWidth = 44, kPaperWidth = 8, kOursWidth = 25, kPWidth = 8,
               kVerdictWidth = 17;
 
 // "total energy" for "total_energy_kj".
@@ -48,9 +48,12 @@ std::string OursText(const Judgement& judged, bool sign) {
   return fmt::format("{} [{}, {}]", Short(judged.ours, sign), Short(judged.lo, sign), Short(judged.hi, sign));
 }
 
-std::string PText(double p) {
-  if (std::isnan(p)) return "";
-  return p < 0.0001 ? "<0.0001" : fmt::format("{:.{}f}", p, p < 0.01 ? 4 : 3);
+// The smaller of the two p-values, with '!' where it speaks against the claim.
+std::string PText(const Judgement& judged) {
+  if (std::isnan(judged.p_holm)) return "";
+  const bool against = judged.p_against_holm < judged.p_holm;
+  const double p = against ? judged.p_against_holm : judged.p_holm;
+  return (p < 0.0001 ? "<0.0001" : fmt::format("{:.{}f}", p, p < 0.01 ? 4 : 3)) + (against ? "!" : " ");
 }
 
 // "2r 3d": verdicts of the networks alone.
@@ -84,8 +87,8 @@ std::string Table(const ClaimStudy& study) {
     const std::string paper = order ? Short(judged.all.paper, true) : judged.claim.paper_value;
     const std::string about = judged.claim.source == "about" ? "~" : "";
     text += Line(judged.claim.id, ClaimInWords(judged.claim, kClaimWidth - 1), about + paper,
-                 OursText(judged.all, order), PText(judged.all.p_holm),
-                 std::string(NameOf(judged.all.verdict)), NetworksText(judged));
+                 OursText(judged.all, order), PText(judged.all), std::string(NameOf(judged.all.verdict)),
+                 NetworksText(judged));
   }
   return text;
 }
@@ -94,7 +97,13 @@ std::string Summary(const ClaimStudy& study) {
   std::map<Verdict, int> counts = CountVerdicts(study);
   std::vector<std::string> parts;
   for (const Verdict verdict : kVerdicts)
-    if (counts[verdict] > 0) parts.push_back(fmt::format("{} {}", counts[verdict], NameOf(verdict)));
+    if (counts[verdict] > 0) {
+      parts.push_back(fmt::format("{} {}", counts[verdict], NameOf(verdict)));
+      if (const int built = CountReproducedByConstruction(study);
+          verdict == Verdict::kReproduced && built > 0)
+        parts.back() +=
+            fmt::format(" ({} by measurement, {} hold by construction)", counts[verdict] - built, built);
+    }
   return Wrap(fmt::format("{} claims: {}.", study.claims.size(), fmt::join(parts, ", ")), "", kTerminalWidth);
 }
 
@@ -118,7 +127,8 @@ std::string Notes(const ClaimStudy& study) {
   std::string notes = Wrap(
       "An order shows the difference in its least certain part, + as claimed. Differences are paired over "
       "scenarios; "
-      "p values are two-sided, corrected by Holm over all directional claims. Why each verdict: "
+      "p values are two-sided, corrected by Holm over all directional claims; with ! the opposite of the "
+      "claim is the likelier. Why each verdict: "
       "verdicts.csv.",
       "", kTerminalWidth);
   if (study.networks > 1) {
@@ -188,6 +198,7 @@ Json VerdictJson(const ClaimStudy& study) {
                    {"hi", NumberOrNull(judged.all.hi)},
                    {"p", NumberOrNull(judged.all.p)},
                    {"p_holm", NumberOrNull(judged.all.p_holm)},
+                   {"p_against_holm", NumberOrNull(judged.all.p_against_holm)},
                    {"verdict", NameOf(judged.all.verdict)},
                    {"why", judged.all.why},
                    {"by_network", ByNetworkJson(judged)}});
@@ -196,7 +207,8 @@ Json VerdictJson(const ClaimStudy& study) {
 }
 
 std::string VerdictCsv(const ClaimStudy& study) {
-  std::string csv = "id,where,strategy,metric,kind,claim,paper,ours,lo,hi,p,p_holm,verdict,why";
+  std::string csv =
+      "id,where,strategy,metric,kind,claim,paper,ours,lo,hi,p,p_holm,p_against_holm,verdict,why";
   for (const Verdict verdict : kVerdicts) {
     std::string column(NameOf(verdict));
     std::replace(column.begin(), column.end(), ' ', '_');
@@ -207,12 +219,12 @@ std::string VerdictCsv(const ClaimStudy& study) {
   for (const JudgedClaim& judged : study.claims) {
     const Claim& claim = judged.claim;
     const std::string& what = claim.comparison.empty() ? claim.strategy : claim.comparison;
-    csv +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", claim.id, CsvField(claim.where),
-                    CsvField(claim.strategy), claim.metric, claim.kind, CsvField(what),
-                    NumberOrEmpty(judged.all.paper), NumberOrEmpty(judged.all.ours),
-                    NumberOrEmpty(judged.all.lo), NumberOrEmpty(judged.all.hi), NumberOrEmpty(judged.all.p),
-                    NumberOrEmpty(judged.all.p_holm), NameOf(judged.all.verdict), CsvField(judged.all.why));
+    csv += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", claim.id, CsvField(claim.where),
+        CsvField(claim.strategy), claim.metric, claim.kind, CsvField(what), NumberOrEmpty(judged.all.paper),
+        NumberOrEmpty(judged.all.ours), NumberOrEmpty(judged.all.lo), NumberOrEmpty(judged.all.hi),
+        NumberOrEmpty(judged.all.p), NumberOrEmpty(judged.all.p_holm),
+        NumberOrEmpty(judged.all.p_against_holm), NameOf(judged.all.verdict), CsvField(judged.all.why));
     std::map<Verdict, int> counts = CountByNetwork(judged);
     for (const Verdict verdict : kVerdicts) csv += fmt::format(",{}", counts[verdict]);
     csv += '\n';

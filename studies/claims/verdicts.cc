@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -52,11 +53,11 @@ bool AgreesInSize(const Claim& claim, const Judgement& judged) {
          (claim.tolerance > 0 && std::abs(judged.ours - paper->value) <= claim.tolerance + paper->half_unit);
 }
 
-void DecideOrder(const Evidence& evidence, bool similarity, double p_against_holm, Judgement& judged) {
+void DecideOrder(const Evidence& evidence, bool similarity, Judgement& judged) {
   judged.why = evidence.detail + (similarity ? "" : " is its least certain part");
   if (judged.p_holm < kLevel) {
     judged.verdict = similarity || evidence.sizes_agree ? Verdict::kReproduced : Verdict::kDirectionHolds;
-  } else if (p_against_holm < kLevel) {
+  } else if (judged.p_against_holm < kLevel) {
     judged.verdict = Verdict::kDiffers;
     judged.why += "; the opposite is significant";
   } else {
@@ -151,11 +152,10 @@ class Round {
       if (fresh) p_for.push_back(evidence_[i]->p_for), p_against.push_back(evidence_[i]->p_against);
     }
     const std::vector<double> holm_for = HolmAdjust(p_for), holm_against = HolmAdjust(p_against);
-    p_against_holm_.assign(parsed_.size(), kNoNumber);
     for (std::size_t i = 0; i < parsed_.size(); ++i) {
       if (!evidence_[i] || !evidence_[i]->directional) continue;
       judged_[i].p_holm = holm_for[member[i]];
-      p_against_holm_[i] = holm_against[member[i]];
+      judged_[i].p_against_holm = holm_against[member[i]];
     }
   }
 
@@ -167,7 +167,7 @@ class Round {
     judged.paper = evidence.paper;
     judged.p = evidence.p_for;
     if (claim.kind == "order")
-      DecideOrder(evidence, claim.tolerance > 0, p_against_holm_[i], judged);
+      DecideOrder(evidence, claim.tolerance > 0, judged);
     else if (claim.kind == "ratio")
       DecideComparison(claim, evidence, judged);
     else
@@ -182,7 +182,6 @@ class Round {
   std::span<const ArmData> data_;
   const ResampledArms& arms_;
   std::vector<std::optional<Evidence>> evidence_;
-  std::vector<double> p_against_holm_;
   std::vector<Judgement> judged_;
 };
 
@@ -237,6 +236,16 @@ std::map<Verdict, int> CountVerdicts(const ClaimStudy& study) {
   std::map<Verdict, int> counts;
   for (const JudgedClaim& judged : study.claims) ++counts[judged.all.verdict];
   return counts;
+}
+
+int CountReproducedByConstruction(const ClaimStudy& study) {
+  return static_cast<int>(
+      std::count_if(study.claims.begin(), study.claims.end(), [](const JudgedClaim& judged) {
+        const Claim& claim = judged.claim;
+        const bool built = claim.kind == "setup" || claim.source == "construction" ||
+                           (claim.kind == "value" && !PaperValueOf(claim));
+        return built && judged.all.verdict == Verdict::kReproduced;
+      }));
 }
 
 std::map<Verdict, int> CountByNetwork(const JudgedClaim& claim) {

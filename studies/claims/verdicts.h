@@ -60,7 +60,8 @@ struct Judgement {
   double paper = std::numeric_limits<double>::quiet_NaN();
   double p = std::numeric_limits<double>::quiet_NaN();  // of what is claimed; none for numbers of one arm
   double p_holm = std::numeric_limits<double>::quiet_NaN();
-  std::string why;  // one sentence without a full stop
+  double p_against_holm = std::numeric_limits<double>::quiet_NaN();  // of the opposite
+  std::string why;                                                   // one sentence without a full stop
 };
 
 struct JudgedClaim {
@@ -83,6 +84,8 @@ struct ClaimStudy {
 ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData> arms);
 
 std::map<Verdict, int> CountVerdicts(const ClaimStudy& study);
+// Claims that are reproduced without a measurement: how the study is set up, how an arm is built, what the paper leaves out.
+int CountReproducedByConstruction(const ClaimStudy& study);
 // Of one claim over the single networks.
 std::map<Verdict, int> CountByNetwork(const JudgedClaim& claim);
 

@@ -1,5 +1,6 @@
 #include "studies/claims/verdict_tables.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -42,6 +43,27 @@ TEST(VerdictTextTest, SaysWhatIsClaimedAndWhatCameOut) {
   EXPECT_NE(text.find("include the luck of training (5 networks"), std::string::npos);
 }
 
+TEST(VerdictTextTest, AnOppositeThatIsSignificantShowsItsOwnP) {
+  const ClaimStudy study = JudgeClaims(
+      PaperClaims(), std::vector<ArmData>{MakeArm({"ed3r-75", 45, 0.02}), MakeArm({"ecd2r", 28, 0.05}),
+                                          MakeArm({"rbs", 35, 0.2, 0, false})});
+  const std::string line = LineOf(VerdictText(study), "C140");
+  EXPECT_NE(line.find("! "), std::string::npos) << line;
+  EXPECT_NE(line.find("differs"), std::string::npos) << line;
+  EXPECT_EQ(line.find("1.000"), std::string::npos) << line;
+  const auto json = VerdictJson(study)[139];
+  EXPECT_LT(json.at("p_against_holm"), 0.05);
+  EXPECT_GT(json.at("p_holm"), 0.5);
+}
+
+TEST(VerdictTextTest, CountsWhatHoldsByConstructionApart) {
+  const std::string summary = LineOf(VerdictText(Study()), "177 claims: ");
+  EXPECT_GT(CountReproducedByConstruction(Study()), 0);
+  EXPECT_NE(summary.find(fmt::format("{} hold by construction", CountReproducedByConstruction(Study()))),
+            std::string::npos)
+      << summary;
+}
+
 TEST(VerdictTextTest, WhatIsNotThereTakesOneEntryPerReason) {
   const std::string text = VerdictText(Study());
   EXPECT_EQ(LineOf(text, "C027"), "");
@@ -71,7 +93,7 @@ TEST(VerdictDataTest, JsonAndCsvAgree) {
   ASSERT_EQ(rows.size(), json.size() + 1);
   for (std::size_t i = 0; i < json.size(); ++i) {
     EXPECT_EQ(json[i].at("id"), rows[i + 1][0]);
-    EXPECT_EQ(json[i].at("verdict"), rows[i + 1][12]);
+    EXPECT_EQ(json[i].at("verdict"), rows[i + 1][13]);
     EXPECT_EQ(json[i].at("ours").is_null(), rows[i + 1][7].empty());
   }
   const auto& order = json[139];
