@@ -147,8 +147,8 @@ Command AddExplain(CLI::App& program) {
       "explain",
       "Why a timestep went as it did: candidates, predicted rewards, mechanism, chosen action, reward");
   parser->add_option("DIR", options->dir, "Run directory")->required();
-  parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. ed3r-75/12")->required();
-  parser->add_option("--step", options->step, "Timestep k, from 1")->required();
+  parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. ed3r-75/12; missions count from 0")->required();
+  parser->add_option("--step", options->step, "Timestep; timesteps count from 1")->required();
   parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache");
   parser->add_flag("--json", options->json, "Print JSON");
   return {parser, [options] { return Explain(*options); }};

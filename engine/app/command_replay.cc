@@ -114,7 +114,7 @@ Command AddReplay(CLI::App& program) {
   CLI::App* parser = program.add_subcommand(
       "replay", "Flies a stored mission again, checks that it is identical, writes its trace and map");
   parser->add_option("DIR", options->dir, "Run directory")->required();
-  parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. rbs/12")->required();
+  parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. rbs/12; missions count from 0")->required();
   parser->add_option("--out", options->out, "Folder for trace and map; default DIR/replay/MISSION");
   parser
       ->add_option("--frames", options->frames,
