@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "tests/app/command.h"
 
@@ -44,6 +47,88 @@ ScratchFolder* ExplainTest::scratch_ = nullptr;
 
 bool Contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
+}
+
+// The rules of the paper's appendix (R25), stated again.
+std::string ByTheRules(const json& rules) {
+  const double rate = rules["rate_ratio"].get<double>() - rules["transmission_threshold"].get<double>();
+  const double cpu = rules["cpu_ratio"].get<double>() - rules["processing_threshold"].get<double>();
+  bool offload = rate > cpu;
+  if (rate > 0 && cpu > 0) offload = rules["where_draw"].get<double>() < 0.5;
+  if (offload) return "offload";
+  return rules["model_draw"].get<double>() < 0.5 ? "full" : "quantized";
+}
+
+// Timesteps of one mission after the other until both kinds were seen: where a coin decided, and where none was asked.
+TEST_F(ExplainTest, ARuleBasedTimestepShowsTheRulesInputs) {
+  bool coin = false, no_coin = false;
+  for (int i = 0; i < 12 && !(coin && no_coin); ++i) {
+    const std::string command = fmt::format("explain {} rbs/{} --step {}", Dir(), 1 + i / 4, 1 + i % 4);
+    const CommandResult result = Ed3r(command + " --json");
+    if (result.status == 2) continue;  // a short mission
+    const json told = json::parse(result.out);
+    const json& rules = told["rules"];
+    EXPECT_EQ(told["execution_by"], "rules");
+    EXPECT_FALSE(told.contains("robot_predicted_rewards"));
+    EXPECT_TRUE(told["timestep"]["rc_predicted_reward"].is_null());
+    EXPECT_EQ(told["execution"], ByTheRules(rules)) << result.out;
+    EXPECT_NEAR(rules["cpu_ratio"].get<double>() * 3.2e9, told["timestep"]["cpu_hz"].get<double>(), 1.0);
+    (rules.contains("where_draw") ? coin : no_coin) = true;
+
+    const std::string text = Ed3r(command).out;
+    EXPECT_FALSE(Contains(text, "nan")) << text;
+    for (const auto& [exceeds, key] : {std::pair{"rate_exceeds", "transmission_threshold"},
+                                       std::pair{"cpu_exceeds", "processing_threshold"}})
+      EXPECT_TRUE(Contains(text, fmt::format(": {} rbs.{} {}\n", rules[exceeds] ? "above" : "not above", key,
+                                             rules[key].get<double>())))
+          << text;
+    EXPECT_EQ(Contains(text, "by a coin, as both are above (draw "), rules.contains("where_draw")) << text;
+    EXPECT_TRUE(Contains(text, fmt::format("  > {}\n", told["execution"].get<std::string>()))) << text;
+  }
+  EXPECT_TRUE(coin && no_coin) << "the missions show both kinds of timestep";
+}
+
+TEST_F(ExplainTest, AModelThatIsNoCoinIsToldAsSuch) {
+  const ScratchFolder scratch;
+  Fly("rbs.yaml", "--missions 1 --set rbs.model=full --set rbs.transmission_threshold=1", scratch / "run");
+  const std::string text = Ed3r(fmt::format("explain {} rbs/0 --step 1", (scratch / "run").string())).out;
+  EXPECT_TRUE(Contains(text, "  model: as rbs.model says\n  > full\n")) << text;
+}
+
+TEST_F(ExplainTest, ARandomOrFixedChoiceIsToldAsSuch) {
+  const ScratchFolder scratch;
+  const std::pair<const char*, const char*> cases[] = {
+      {"random", ": drawn at random from offload, full, quantized\n"},
+      {"random-offload", "  > offload: the only execution of this strategy\n"}};
+  for (const auto& [strategy, said] : cases) {
+    const fs::path dir = scratch / strategy;
+    Fly("rbs.yaml", fmt::format("--missions 1 --set mission.strategy={}", strategy), dir);
+    const std::string arm = json::parse(Ed3r("status --json " + dir.string()).out)["arms"][0]["arm"];
+    const std::string text = Ed3r(fmt::format("explain {} {}/0 --step 2", dir.string(), arm)).out;
+    EXPECT_TRUE(Contains(text, said)) << text;
+    EXPECT_FALSE(Contains(text, "nan")) << text;
+  }
+}
+
+TEST_F(ExplainTest, NetworksTellTheirPredictions) {
+  const ScratchFolder scratch;
+  Fly("smoke.yaml",
+      fmt::format("--missions 6 --set training.epochs=3 --cache {}", (scratch / "cache").string()),
+      scratch / "run");
+  const std::string explain = fmt::format("explain {} --cache {} --step 1 ", (scratch / "run").string(),
+                                          (scratch / "cache").string());
+  const json told = json::parse(Ed3r(explain + "ed3r-75/3 --json").out);
+  EXPECT_EQ(told["robot_predicted_rewards"].size(), 3u);
+  EXPECT_FALSE(told.contains("rules"));
+  const std::string text = Ed3r(explain + "ed3r-75/3").out;
+  EXPECT_TRUE(Contains(text, "  offload    predicted reward ")) << text;
+  EXPECT_TRUE(Contains(text, told["execution_by"] == "network"
+                                 ? ": the best prediction among offload, full, quantized\n"
+                                 : ": drawn at random from offload, full, quantized\n"))
+      << text;
+  EXPECT_TRUE(Contains(text, ", the RC expected ")) << text;
+  const std::string fixed = Ed3r(explain + "ablation-1/3").out;
+  EXPECT_TRUE(Contains(fixed, "  > full: the only execution of this strategy\n")) << fixed;
 }
 
 TEST_F(ExplainTest, AMistypedArmIsAnsweredWithTheNearest) {
