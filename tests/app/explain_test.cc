@@ -144,5 +144,77 @@ TEST_F(ExplainTest, AMistypedArmIsAnsweredWithTheNearest) {
   EXPECT_TRUE(Contains(Ed3r("explain --help").out, "timesteps count from 1"));
 }
 
+TEST_F(ExplainTest, FramesAreCheckedBeforeAnythingIsWritten) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "replay").string();
+  for (const char* frames : {"99", "1,99", "0"}) {
+    const CommandResult result =
+        Ed3r(fmt::format("replay {} rbs/1 --out {} --frames {}", Dir(), out, frames));
+    EXPECT_EQ(result.status, 2) << frames;
+    EXPECT_TRUE(Contains(result.err, ": is not allowed; the mission has timesteps 1 .. ")) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_FALSE(fs::exists(out)) << frames;
+  }
+}
+
+TEST_F(ExplainTest, FramesAreListedWithCommasOrSpaces) {
+  EXPECT_TRUE(Contains(Ed3r("replay --help").out, "--frames K[,K...] "));
+  const std::string mission = Dir() + " rbs/1";
+  for (const std::string& arguments :
+       {mission + " --frames 1,2", mission + " --frames 1 2", "--frames 1 2 " + mission}) {
+    const ScratchFolder out;
+    const CommandResult result = Ed3r(fmt::format("replay --out {} {}", out.Path().string(), arguments));
+    EXPECT_EQ(result.status, 0) << arguments << result.err;
+    EXPECT_TRUE(fs::exists(out / "step001_large.png")) << arguments;
+    EXPECT_TRUE(fs::exists(out / "step002_frames.png")) << arguments;
+  }
+}
+
+// The fast tier never looked at a picture: those that replay draws must not pass for what the mission knew.
+TEST_F(ExplainTest, PicturesOfTheFastTierSayThatTheMissionUsedNone) {
+  const ScratchFolder scratch;
+  const CommandResult result =
+      Ed3r(fmt::format("replay {} rbs/1 --frames 2 --out {}", Dir(), (scratch / "out").string()));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json step = json::parse(Ed3r("explain --json --step 2 " + Dir() + " rbs/1").out)["timestep"];
+  const auto value = [&](const char* name) { return step[name].get<double>(); };
+  EXPECT_TRUE(Contains(
+      result.out, fmt::format("  pictures only: this mission's confidences came from the profile tier: mean "
+                              "{:.3f}, sd {:.3f}, SCS {:.3f}\n",
+                              value("confidence_mean"), value("confidence_sd"), value("scs"))))
+      << result.out;
+}
+
+std::vector<std::string> Cells(const std::string& line) {
+  std::istringstream text(line);
+  std::vector<std::string> cells;
+  for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+TEST_F(ExplainTest, TimestepsAreWrittenWithTheNamesThatExplainUses) {
+  const ScratchFolder scratch;
+  ASSERT_EQ(Ed3r(fmt::format("replay {} rbs/1 --out {}", Dir(), (scratch / "out").string())).status, 0);
+  std::istringstream lines(ReadAll(scratch / "out/timesteps.csv"));
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> columns = Cells(line);
+  int rows = 0;
+  for (; std::getline(lines, line) && rows < 4; ++rows) {
+    const std::vector<std::string> cells = Cells(line);
+    ASSERT_EQ(cells.size(), columns.size());
+    std::map<std::string, std::string> row;
+    for (std::size_t i = 0; i < cells.size(); ++i) row[columns[i]] = cells[i];
+    const json told =
+        json::parse(Ed3r(fmt::format("explain --json --step {} {} rbs/1", row["k"], Dir())).out);
+    EXPECT_EQ(row["motion_rule"], told["motion_rule"]);
+    EXPECT_EQ(row["execution"], told["execution"]);
+    EXPECT_TRUE(told["band"].get<std::string>().starts_with(row["band"] + ":")) << row["band"];
+    EXPECT_EQ(row["halted"], fmt::format("{}", told["timestep"]["halted"].get<int>()));
+  }
+  EXPECT_GT(rows, 1);
+}
+
 }  // namespace
 }  // namespace ed3r
