@@ -8,6 +8,8 @@
 #include <numeric>
 
 #include "engine/app/commands.h"
+#include "engine/app/decision_text.h"
+#include "engine/app/execution_reason.h"
 #include "engine/app/stored_run.h"
 #include "engine/core/check.h"
 
@@ -23,22 +25,6 @@ struct Options {
   std::string cache = "results/cache";
   bool json = false;
 };
-
-const char* BandText(std::int64_t band) {
-  switch (static_cast<ConfidenceBand>(band)) {
-    case ConfidenceBand::kReliable:
-      return "reliable: hover (Algorithm line 4)";
-    case ConfidenceBand::kIntermediate:
-      return "intermediate: ranges shrink (Algorithm line 9)";
-    case ConfidenceBand::kPersisting:
-      return "intermediate persists: ranges widen, explore (Algorithm line 11)";
-    case ConfidenceBand::kLow:
-      return "low: normal operation (Algorithm line 14)";
-    case ConfidenceBand::kNone:
-      break;
-  }
-  return "early completion is off";
-}
 
 // Indices into the admitted candidates, best first.
 std::vector<std::size_t> Ranking(const CandidateTrace& trace) {
@@ -71,7 +57,12 @@ void PrintCandidates(const CandidateTrace& trace) {
     fmt::print("    {:8.4f}  {}\n", trace.rewards[order[i]], CommandText(CommandAt(trace, order[i])));
 }
 
-void PrintText(const DecisionProbe& probe, const TimestepRecord& step) {
+// ", the RC expected 0.1234"; nothing where no network was asked.
+std::string Expected(const char* who, double reward) {
+  return std::isnan(reward) ? "" : fmt::format(", {} expected {:.4f}", who, reward);
+}
+
+void PrintText(const MissionTask& task, const DecisionProbe& probe, const TimestepRecord& step) {
   const RcView& rc = probe.rc_view;
   fmt::print(
       "stage 1, RC: at ({:.1f}, {:.1f}, {:.1f}) m, {:.1f} m from the RC, previous SCS {:.3f}, energy {:.0f} "
@@ -87,20 +78,19 @@ void PrintText(const DecisionProbe& probe, const TimestepRecord& step) {
   fmt::print("stage 2, robot: battery {:.1f} %, CPU {:.2f} GHz, {:.1f} m from the RC, {:.1f} Mbit/s\n",
              100.0 * probe.robot_view.battery_ratio, step.cpu_hz / 1e9, step.rc_distance_m,
              step.rate_bps / 1e6);
-  for (const auto& [value, name] : EnumNames<Execution>::kNames)
-    fmt::print("  {} {:<10} predicted reward {:.4f}\n",
-               step.execution == static_cast<std::int64_t>(value) ? ">" : " ", name,
-               probe.robot_rewards[static_cast<std::size_t>(value)]);
+  fmt::print("{}", ExecutionText(task, probe));
   fmt::print("detection: mean {:.3f}, sd {:.3f}, SCS {:.3f}; fire {}in view\n", step.confidence_mean,
              step.confidence_sd, step.scs, step.fire_in_view != 0 ? "" : "not ");
-  fmt::print("energy {:.0f} J; reward {:.4f}, the RC expected {:.4f}, the robot {:.4f}\n", step.total_j,
-             step.reward, step.rc_predicted_reward, step.robot_predicted_reward);
+  fmt::print("energy {:.0f} J; reward {:.4f}{}{}\n", step.total_j, step.reward,
+             Expected("the RC", step.rc_predicted_reward),
+             Expected("the robot", step.robot_predicted_reward));
 }
 
-void PrintJson(const DecisionProbe& probe, const TimestepRecord& step) {
+void PrintJson(const MissionTask& task, const DecisionProbe& probe, const TimestepRecord& step) {
   nlohmann::ordered_json object;
-  TimestepRecord::Describe(
-      step, [&](std::string_view name, const auto& value) { object["timestep"][std::string(name)] = value; });
+  TimestepRecord::Describe(step, [&](std::string_view name, const auto& value) {
+    object["timestep"][std::string(name)] = value;  // NaN becomes null
+  });
   object["motion_rule"] = NameOf(static_cast<MotionRule>(step.motion_rule));
   object["band"] = BandText(step.band);
   object["candidates"] = {{"drawn", probe.candidates.commands.size()},
@@ -115,9 +105,7 @@ void PrintJson(const DecisionProbe& probe, const TimestepRecord& step) {
                                             {"turn_rad", c.turn_rad},
                                             {"tilt_rad", c.tilt_rad}});
   }
-  for (const auto& [value, name] : EnumNames<Execution>::kNames)
-    object["robot_predicted_rewards"][std::string(name)] =
-        probe.robot_rewards[static_cast<std::size_t>(value)];
+  AddExecution(task, probe, object);
   fmt::print("{}\n", object.dump(2));
 }
 
@@ -135,7 +123,7 @@ int Explain(const Options& options) {
   FlyMission(task);
   ED3R_CHECK(probe.reached, "the mission ended before the stored one");
   const TimestepRecord& step = stored.record.steps[static_cast<std::size_t>(options.step - 1)];
-  options.json ? PrintJson(probe, step) : PrintText(probe, step);
+  options.json ? PrintJson(task, probe, step) : PrintText(task, probe, step);
   return kDone;
 }
 
@@ -147,8 +135,9 @@ Command AddExplain(CLI::App& program) {
       "explain",
       "Why a timestep went as it did: candidates, predicted rewards, mechanism, chosen action, reward");
   parser->add_option("DIR", options->dir, "Run directory")->required();
-  parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. ed3r-75/12")->required();
-  parser->add_option("--step", options->step, "Timestep k, from 1")->required();
+  parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. ed3r-75/12; missions count from 0")
+      ->required();
+  parser->add_option("--step", options->step, "Timestep; timesteps count from 1")->required();
   parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache");
   parser->add_flag("--json", options->json, "Print JSON");
   return {parser, [options] { return Explain(*options); }};

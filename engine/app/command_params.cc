@@ -5,7 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/app/commands.h"
+#include "engine/app/words.h"
 #include "engine/config/parameters.h"
+#include "engine/core/check.h"
 
 namespace ed3r {
 namespace {
@@ -19,6 +21,9 @@ std::vector<ParameterInfo> Selected(const std::string& filter) {
   std::vector<ParameterInfo> selected;
   for (const ParameterInfo& parameter : Parameters())
     if (parameter.key.find(filter) != std::string::npos) selected.push_back(parameter);
+  if (selected.empty())
+    throw UserError(
+        fmt::format("params: no key contains '{}'{}", filter, DidYouMean(filter, ParameterKeys())));
   return selected;
 }
 

@@ -8,6 +8,7 @@
 #include "engine/agents/strategy.h"
 #include "engine/app/commands.h"
 #include "engine/app/sweep_arguments.h"
+#include "engine/app/words.h"
 #include "engine/robot/energy.h"
 
 namespace ed3r {
@@ -64,7 +65,8 @@ void PrintJson(const SweepPlan& plan, int threads) {
 }
 
 void PrintText(const SweepPlan& plan, int threads) {
-  fmt::print("{}: {}\nseed {}, {} missions\n", plan.name, plan.question, plan.seed, plan.Missions());
+  fmt::print("{}: {}\nseed {}, {}\n", plan.name, plan.question, plan.seed,
+             Counted(plan.Missions(), "mission"));
   for (const Stage& stage : plan.stages) {
     fmt::print("\nstage {}", stage.name);
     for (std::size_t i = 0; i < stage.after.size(); ++i)
@@ -73,8 +75,9 @@ void PrintText(const SweepPlan& plan, int threads) {
       fmt::print(": trains the networks that later stages ask for, unless the cache holds them\n");
       continue;
     }
-    fmt::print(": {} arms x {} missions, about {:.1f} min on {} threads\n", stage.arms.size(), stage.missions,
-               ExpectedWallS(stage, threads) / 60.0, threads);
+    fmt::print(
+        ": {} x {}, about {:.1f} min on {}\n", Counted(static_cast<std::int64_t>(stage.arms.size()), "arm"),
+        Counted(stage.missions, "mission"), ExpectedWallS(stage, threads) / 60.0, Counted(threads, "thread"));
     for (const Arm& arm : stage.arms) {
       std::string settings;
       for (const auto& [key, value] : arm.settings) settings += fmt::format("  {}={}", key, value);

@@ -3,11 +3,14 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 #include "engine/app/commands.h"
+#include "engine/app/decision_text.h"
+#include "engine/app/mission_pictures.h"
 #include "engine/app/stored_run.h"
+#include "engine/app/words.h"
 #include "engine/core/check.h"
-#include "engine/perception/pixels/pixel_sensor.h"
 #include "engine/store/digest.h"
 #include "engine/world/map_picture.h"
 
@@ -36,6 +39,13 @@ class TraceFile : public TraceSink {
   std::ofstream file_;
 };
 
+std::string CellOf(std::string_view, double value) { return fmt::format("{}", value); }
+
+std::string CellOf(std::string_view column, std::int64_t value) {
+  const std::string_view name = CodeName(column, value);
+  return name.empty() ? fmt::format("{}", value) : std::string(name);
+}
+
 void WriteSteps(const MissionRecord& record, const std::filesystem::path& path) {
   std::ofstream file(path);
   std::string separator;
@@ -46,50 +56,37 @@ void WriteSteps(const MissionRecord& record, const std::filesystem::path& path) 
   });
   for (const TimestepRecord& step : record.steps) {
     separator = "\n";
-    TimestepRecord::Describe(step, [&](std::string_view, const auto& value) {
-      file << separator << fmt::format("{}", value);
+    TimestepRecord::Describe(step, [&](std::string_view name, const auto& value) {
+      file << separator << CellOf(name, value);
       separator = ",";
     });
   }
   file << "\n";
 }
 
-// What the camera saw after the move of some timesteps. A mission of the fast tier can be looked at, too: with the
-// detectors of its configuration.
-void WriteFrames(const MissionTask& task, const MissionRecord& flown, const std::vector<int>& timesteps,
-                 const std::filesystem::path& out) {
-  if (timesteps.empty()) return;
-  for (const int k : timesteps)
-    if (k < 1 || k > flown.timesteps)
+void CheckFrames(const std::vector<int>& frames, std::int64_t timesteps) {
+  for (const int k : frames)
+    if (k < 1 || k > timesteps)
       throw UserError(
-          fmt::format("--frames {}: is not allowed; the mission has timesteps 1 .. {}", k, flown.timesteps));
-  PixelTier own;
-  if (task.pixels == nullptr)
-    own = {std::make_shared<const TraceScene>(task.scene), LoadDetectors(task.config.perception.detector)};
-  const PixelTier& tier = task.pixels != nullptr ? *task.pixels : own;
-  const SensorScenario scenario{static_cast<int>(flown.site), task.seed, task.scenario};
-  for (const int k : timesteps) {
-    const TimestepRecord& step = flown.steps[static_cast<std::size_t>(k - 1)];
-    const Pose pose{{step.x_m, step.y_m, step.z_m}, step.yaw_rad, step.tilt_rad};
-    const std::string stem = (out / fmt::format("step{:03}", k)).string();
-    WriteSensingPictures(tier, task.config, scenario, pose, static_cast<std::uint32_t>(k), stem);
-    fmt::print("{}_frames.png, {}_large.png\n", stem, stem);
-  }
+          fmt::format("--frames {}: is not allowed; the mission has timesteps 1 .. {}", k, timesteps));
 }
 
 int Replay(const Options& options) {
   StoredRun run(options.dir, options.cache);
   const RunId id = run.Find(options.mission);
   const StoredMission stored = run.Reader().LoadMission(id);
+  CheckFrames(options.frames, stored.record.timesteps);  // before anything is flown or written
   std::string name = options.mission;
   for (char& c : name)
     if (c == '/') c = '-';
   const std::filesystem::path out = options.out.empty() ? std::filesystem::path(options.dir) / "replay" / name
                                                         : std::filesystem::path(options.out);
+  MissionTask task = run.Task(id);
+  std::optional<MissionPictures> pictures;
+  if (!options.frames.empty()) pictures.emplace(task);
   std::filesystem::create_directories(out);
 
   TraceFile trace(out / "trace.csv");
-  MissionTask task = run.Task(id);
   task.trace = &trace;
   const MissionRecord flown = FlyMission(task);
   const bool identical = DigestOf(flown) == DigestOf(stored.record);
@@ -98,10 +95,12 @@ int Replay(const Options& options) {
   for (const TimestepRecord& step : flown.steps) path_m.emplace_back(step.x_m, step.y_m, step.z_m);
   WriteMapPicture(task.scene, (out / "map.png").string(),
                   {.path_m = path_m, .site = static_cast<int>(flown.site)});
-  WriteFrames(task, flown, options.frames, out);
-  fmt::print("{}: {} in {} timesteps, {:.1f} s, {:.2f} kJ; {}\n", options.mission,
-             NameOf(static_cast<Outcome>(flown.outcome)), flown.timesteps, flown.duration_s,
-             flown.total_j / 1000.0,
+  for (const int k : options.frames)
+    if (k <= flown.timesteps)  // a flight that differs may be shorter
+      fmt::print("{}", pictures->Write(flown, k, (out / fmt::format("step{:03}", k)).string()));
+  fmt::print("{}: {} in {}, {:.1f} s, {:.2f} kJ; {}\n", options.mission,
+             NameOf(static_cast<Outcome>(flown.outcome)), Counted(flown.timesteps, "timestep"),
+             flown.duration_s, flown.total_j / 1000.0,
              identical ? "identical to the stored record" : "DIFFERS from the stored record");
   fmt::print("{}: trace.csv, timesteps.csv, map.png\n", out.string());
   return identical ? kDone : kFailedInside;
@@ -114,13 +113,16 @@ Command AddReplay(CLI::App& program) {
   CLI::App* parser = program.add_subcommand(
       "replay", "Flies a stored mission again, checks that it is identical, writes its trace and map");
   parser->add_option("DIR", options->dir, "Run directory")->required();
-  parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. rbs/12")->required();
+  parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. rbs/12; missions count from 0")
+      ->required();
   parser->add_option("--out", options->out, "Folder for trace and map; default DIR/replay/MISSION");
   parser
       ->add_option("--frames", options->frames,
-                   "Also pictures of what the camera saw in these timesteps, e.g. 1,4")
+                   "Also pictures of what the camera saw in these timesteps, from 1; e.g. 1,4 or 1 4")
       ->delimiter(',')
-      ->allow_extra_args(false);
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("K[,K...]");
   parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache");
   return {parser, [options] { return Replay(*options); }};
 }

@@ -6,6 +6,8 @@
 #include "engine/app/machine.h"
 #include "engine/app/stored_run.h"
 #include "engine/app/sweep_arguments.h"
+#include "engine/app/words.h"
+#include "engine/core/check.h"
 #include "engine/core/interrupt.h"
 #include "engine/schedule/sweep_runner.h"
 #include "studies/report/load.h"
@@ -23,22 +25,35 @@ struct Options {
   bool quiet = false;
 };
 
+// I/N with I from 1 to N. The schedule takes 0/N as well, for the same missions as N/N; here a shard has one name, so
+// that nobody flies one twice and another never.
+Shard ShardOf(const std::string& text) {
+  try {
+    const Shard shard = ParseShard(text);
+    if (text.find_first_not_of("-0") != text.find('/')) return shard;
+  } catch (const UserError&) {
+    // said below, with the numbers that are allowed here
+  }
+  throw UserError(
+      fmt::format("--shard: '{}' is not allowed; allowed: I/N with I from 1 to N, such as 1/4", text));
+}
+
 // One line on what this session did, with the real-time factor per core.
 void Tell(const SweepSummary& summary, const std::string& dir) {
   const RunSummary& flown = summary.flown;
-  fmt::print("{}: {} missions stored", dir, summary.stored_before + flown.stored);
+  fmt::print("{}: {} stored", dir, Counted(summary.stored_before + flown.stored, "mission"));
   if (summary.stored_before > 0) fmt::print(" ({} before)", summary.stored_before);
   if (flown.failed > 0) fmt::print(", {} failed", flown.failed);
   if (flown.stored > 0)
-    fmt::print("; {:.1f} simulated hours in {:.1f} s on {} threads: {:.0f} x real time per core",
-               flown.simulated_s / 3600, flown.wall_s, flown.threads,
+    fmt::print("; {:.1f} simulated hours in {:.1f} s on {}: {:.0f} x real time per core",
+               flown.simulated_s / 3600, flown.wall_s, Counted(flown.threads, "thread"),
                flown.simulated_s / flown.wall_s / flown.threads);
   fmt::print("\n");
   for (const ShelvedNetwork& network : summary.networks) {
     const TrainingReport& report = network.model->data().report;
-    fmt::print("network {}: {} epochs, best {}; R2 train {:.3f}, validation {:.3f}, held out {:.3f}; {}\n",
-               network.name, report.curve.size(), report.best_epoch, report.train.r2, report.validation.r2,
-               report.test.r2, network.file);
+    fmt::print("network {}: {}, best {}; R2 train {:.3f}, validation {:.3f}, held out {:.3f}; {}\n",
+               network.name, Counted(static_cast<std::int64_t>(report.curve.size()), "epoch"),
+               report.best_epoch, report.train.r2, report.validation.r2, report.test.r2, network.file);
   }
   if (!summary.waiting_stage.empty())
     fmt::print("stage {} waits: missions that it builds on are missing or failed\n", summary.waiting_stage);
@@ -46,7 +61,7 @@ void Tell(const SweepSummary& summary, const std::string& dir) {
 
 int Run(const Options& options) {
   const SweepPlan plan = options.sweep.Load();
-  const Shard shard = ParseShard(options.shard);
+  const Shard shard = ShardOf(options.shard);
   ThreadsFor(options.threads);  // refused before worlds are built
   const Inputs inputs(plan);
   InstallInterruptHandler();
@@ -84,8 +99,9 @@ Command AddRun(CLI::App& program) {
   parser->add_option("--out", options->out, "Run directory; default results/runs/<sweep name>");
   parser->add_option("--cache", options->cache,
                      "Where trained networks are kept for all sweeps; default results/cache");
-  parser->add_option("--threads", options->threads, "Threads; default all processors");
-  parser->add_option("--shard", options->shard, "I/N: fly the I-th of N parts; 'ed3r merge' joins them");
+  parser->add_option("--threads", options->threads, "Threads; 0, the default: all processors");
+  parser->add_option("--shard", options->shard,
+                     "I/N, I from 1 to N: fly the I-th of N parts, e.g. 1/4; 'ed3r merge' joins them");
   parser->add_flag("--quiet", options->quiet, "Neither progress nor table");
   return {parser, [options] { return Run(*options); }};
 }

@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "engine/app/commands.h"
+#include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/version.h"
 #include "kernels/simd_level.h"
@@ -16,6 +17,21 @@ std::vector<Command> AddCommands(CLI::App& program) {
           AddCompare(program), AddDigest(program), AddMerge(program),   AddReplay(program),
           AddExplain(program), AddParams(program), AddPhysics(program), AddFit(program),
           AddWorld(program),   AddFrames(program), AddDetect(program),  AddDoctor(program)};
+}
+
+// What is wrong with a command line that the parser refuses. A word left over that no command took should have been a
+// command.
+std::string Refusal(const CLI::App& program, const CLI::ParseError& error) {
+  const std::vector<std::string> left_over = program.remaining();
+  if (left_over.empty()) return fmt::format("{}; 'ed3r --help' tells more", error.what());
+  const std::string& word = left_over.front();
+  if (word.starts_with('-')) return fmt::format("no option '{}'; 'ed3r --help' tells more", word);
+  std::vector<std::string> known;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))
+    known.push_back(command->get_name());
+  const std::string suggestion = DidYouMean(word, known);
+  return fmt::format("no command '{}'{}", word,
+                     suggestion.empty() ? "; 'ed3r --help' lists the commands" : suggestion);
 }
 
 int Main(int argc, char** argv) {
@@ -34,7 +50,7 @@ int Main(int argc, char** argv) {
     return kBadInput;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
-    fmt::print(stderr, "ed3r: {}; 'ed3r --help' tells more\n", error.what());
+    fmt::print(stderr, "ed3r: {}\n", Refusal(program, error));
     return kBadInput;
   } catch (const SimdLevelError& error) {
     fmt::print(stderr, "{}\n", error.what());

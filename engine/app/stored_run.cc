@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "engine/agents/strategy.h"
+#include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/version.h"
 
@@ -34,13 +35,25 @@ SweepPlan ReloadPlan(ResultReader& reader) {
   return plan;
 }
 
-std::string ArmNames(const SweepPlan& plan) {
-  std::string names;
+// With their stages in front where the word has one, too.
+std::vector<std::string> ArmNames(const SweepPlan& plan, bool with_stage) {
+  std::vector<std::string> names;
   for (const Stage& stage : plan.stages)
     for (const Arm& arm : stage.arms)
-      if (stage.kind == StageKind::kFly)
-        names += fmt::format("{}{}/{}", names.empty() ? "" : ", ", stage.name, arm.name);
+      if (stage.kind == StageKind::kFly) names.push_back(with_stage ? stage.name + "/" + arm.name : arm.name);
   return names;
+}
+
+// What is wrong with "TEXT/NUMBER" when no arm is called TEXT, or with a text that has no number.
+std::string UnknownMission(const std::string& mission, const std::string& arm, bool numbered,
+                           const SweepPlan& plan) {
+  std::string problem = "expected ARM/NUMBER";
+  if (numbered) {
+    problem = "no arm " + arm;
+    const std::string suggestion = DidYouMean(arm, ArmNames(plan, arm.find('/') != std::string::npos));
+    if (!suggestion.empty()) return fmt::format("{}: {}{}", mission, problem, suggestion);
+  }
+  return fmt::format("{}: {}; the arms are {}", mission, problem, fmt::join(ArmNames(plan, true), ", "));
 }
 
 }  // namespace
@@ -76,7 +89,7 @@ RunId StoredRun::Find(const std::string& mission) const {
       return {static_cast<int>(s), static_cast<int>(a), number};
     }
   }
-  throw UserError(fmt::format("{}: expected ARM/NUMBER; the arms are {}", mission, ArmNames(plan_)));
+  throw UserError(UnknownMission(mission, arm_text, number >= 0, plan_));
 }
 
 MissionTask StoredRun::Task(const RunId& id) {

@@ -20,7 +20,7 @@ class StoredRun {
   // that says what has changed.
   StoredRun(const std::string& dir, const std::string& cache_dir);
 
-  // "ARM/NUMBER" or "STAGE/ARM/NUMBER", numbers from 0. Throws UserError that lists the arms.
+  // "ARM/NUMBER" or "STAGE/ARM/NUMBER", numbers from 0. Throws UserError that names the nearest arm or lists them.
   RunId Find(const std::string& mission) const;
 
   // Trains or finds the networks where the mission's strategy asks any.

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "engine/agents/strategy.h"
+#include "engine/app/words.h"
 #include "engine/core/check.h"
-#include "engine/core/suggest.h"
 #include "engine/sweep/sweep_file.h"
 #include "studies/metrics/definitions.h"
 
@@ -30,9 +30,8 @@ std::string CheckMetricName(const std::string& name) {
   for (const MetricDefinition& metric : MetricDefinitions())
     if (metric.estimate != Estimate::kMaximum) names.emplace_back(metric.name);
   if (std::find(names.begin(), names.end(), name) != names.end()) return "";
-  const std::string nearest = NearestWord(name, names);
   return fmt::format("metric: '{}' is not allowed; allowed: {}{}", name, fmt::join(names, " | "),
-                     nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
+                     DidYouMean(name, names));
 }
 
 }  // namespace

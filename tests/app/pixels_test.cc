@@ -34,6 +34,7 @@ TEST(PixelsTest, ReplayFliesTheSameAndWritesWhatTheCameraSaw) {
   const CommandResult replay = Ed3r(fmt::format("replay {} rbs/1 --frames 1,2", dir));
   EXPECT_EQ(replay.status, 0) << replay.err;
   EXPECT_NE(replay.out.find("identical to the stored record"), std::string::npos) << replay.out;
+  EXPECT_EQ(replay.out.find("pictures only"), std::string::npos) << "the mission looked at these";
   for (const char* picture : {"step001_frames.png", "step001_large.png", "step002_frames.png"})
     EXPECT_GT(fs::file_size(scratch / "run/replay/rbs-1" / picture), 10000u) << picture;
   const CommandResult beyond = Ed3r(fmt::format("replay {} rbs/1 --frames 4000", dir));

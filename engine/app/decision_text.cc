@@ -1,0 +1,31 @@
+#include "engine/app/decision_text.h"
+
+#include "engine/agents/decisions.h"
+
+namespace ed3r {
+
+std::string_view CodeName(std::string_view column, std::int64_t code) {
+  if (column == "motion_rule") return NameOf(static_cast<MotionRule>(code));
+  if (column == "execution") return NameOf(static_cast<Execution>(code));
+  if (column != "band") return "";
+  const std::string_view text = BandText(code);
+  return text.substr(0, text.find(':'));
+}
+
+std::string_view BandText(std::int64_t band) {
+  switch (static_cast<ConfidenceBand>(band)) {
+    case ConfidenceBand::kReliable:
+      return "reliable: hover (Algorithm line 4)";
+    case ConfidenceBand::kIntermediate:
+      return "intermediate: ranges shrink (Algorithm line 9)";
+    case ConfidenceBand::kPersisting:
+      return "persisting: intermediate again, ranges widen, explore (Algorithm line 11)";
+    case ConfidenceBand::kLow:
+      return "low: normal operation (Algorithm line 14)";
+    case ConfidenceBand::kNone:
+      break;
+  }
+  return "none: early completion is off";
+}
+
+}  // namespace ed3r

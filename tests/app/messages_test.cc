@@ -1,0 +1,74 @@
+// What the program says to a command line that cannot be meant, and what its help promises.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/app/command.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kRbs = ED3R_SOURCE_DIR "/sweeps/rbs.yaml";
+
+void ExpectRefusal(const std::string& arguments, const std::string& message) {
+  const CommandResult result = Ed3r(arguments);
+  EXPECT_EQ(result.status, 2) << arguments;
+  EXPECT_EQ(result.err, message + "\n") << arguments;
+  EXPECT_EQ(result.out, "") << arguments;
+}
+
+// A help text with its line breaks and columns taken out.
+std::string Help(const std::string& command) {
+  std::istringstream words(Ed3r(command + " --help").out);
+  std::string text;
+  for (std::string word; words >> word;) text += word + " ";
+  return text;
+}
+
+TEST(MessagesTest, AnUnknownCommandIsNamedWithTheNearest) {
+  ExpectRefusal("runn", "ed3r: no command 'runn'; did you mean run?");
+  ExpectRefusal("runn " + kRbs + " --quiet", "ed3r: no command 'runn'; did you mean run?");
+  // "run" is a folder here, but it reads like the command.
+  ExpectRefusal("replya run rbs/1", "ed3r: no command 'replya'; did you mean replay?");
+  ExpectRefusal("aardvark", "ed3r: no command 'aardvark'; 'ed3r --help' lists the commands");
+  ExpectRefusal("--jsn", "ed3r: no option '--jsn'; 'ed3r --help' tells more");
+  ExpectRefusal("params --jsn",
+                "ed3r: The following argument was not expected: --jsn; 'ed3r --help' tells more");
+}
+
+TEST(MessagesTest, AFilterThatFindsNoParameterSaysSo) {
+  ExpectRefusal("params zzz", "params: no key contains 'zzz'");
+  ExpectRefusal("params zzz --json", "params: no key contains 'zzz'");
+  ExpectRefusal("params robot.mas_kg", "params: no key contains 'robot.mas_kg'; did you mean robot.mass_kg?");
+  EXPECT_EQ(Ed3r("params mass").status, 0);
+}
+
+TEST(MessagesTest, AShardIsCountedFromOneAlone) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "run").string();
+  for (const char* shard : {"0/4", "00/4", "-0/4", "5/4", "-1/4", "4", "1/0", "1/4x"}) {
+    ExpectRefusal(
+        fmt::format("run {} --missions 4 --out {} --shard {}", kRbs, out, shard),
+        fmt::format("--shard: '{}' is not allowed; allowed: I/N with I from 1 to N, such as 1/4", shard));
+    EXPECT_FALSE(fs::exists(out)) << shard;
+  }
+  EXPECT_NE(Help("run").find("I/N, I from 1 to N"), std::string::npos);
+}
+
+TEST(MessagesTest, OneIsNotWrittenAsMany) {
+  const ScratchFolder scratch;
+  const CommandResult run =
+      Ed3r(fmt::format("run {} --missions 1 --threads 1 --out {}", kRbs, (scratch / "run").string()));
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find(": 1 mission stored; "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find(" on 1 thread: "), std::string::npos) << run.out;
+  EXPECT_NE(Ed3r("plan --missions 2 " + kRbs).out.find(": 1 arm x 2 missions, "), std::string::npos);
+}
+
+TEST(MessagesTest, HelpTellsWhatZeroThreadsMean) {
+  EXPECT_NE(Help("run").find("0, the default: all processors"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ed3r
