@@ -206,8 +206,8 @@ def draw_curves(axis, curve, curves, colour):
 
 
 def plain_ticks(axis):
-    """1, 2, 5, 10, 20, ... on logarithmic axes."""
-    for side in (axis.xaxis, axis.yaxis):
-        side.set_major_locator(LogLocator(base=10, subs=(1, 2, 5), numticks=12))
+    """1, 2, 5, 10, 20, ... on a logarithmic y axis; fewer on x, where the numbers stand side by side."""
+    for side, subs in ((axis.xaxis, (1, 5)), (axis.yaxis, (1, 2, 5))):
+        side.set_major_locator(LogLocator(base=10, subs=subs, numticks=12))
         side.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         side.set_minor_formatter(NullFormatter())
