@@ -25,19 +25,6 @@ struct Options {
   bool quiet = false;
 };
 
-// I/N with I from 1 to N. The schedule takes 0/N as well, for the same missions as N/N; here a shard has one name, so
-// that nobody flies one twice and another never.
-Shard ShardOf(const std::string& text) {
-  try {
-    const Shard shard = ParseShard(text);
-    if (text.find_first_not_of("-0") != text.find('/')) return shard;
-  } catch (const UserError&) {
-    // said below, with the numbers that are allowed here
-  }
-  throw UserError(
-      fmt::format("--shard: '{}' is not allowed; allowed: I/N with I from 1 to N, such as 1/4", text));
-}
-
 // One line on what this session did, with the real-time factor per core.
 void Tell(const SweepSummary& summary, const std::string& dir) {
   const RunSummary& flown = summary.flown;
@@ -61,7 +48,7 @@ void Tell(const SweepSummary& summary, const std::string& dir) {
 
 int Run(const Options& options) {
   const SweepPlan plan = options.sweep.Load();
-  const Shard shard = ShardOf(options.shard);
+  const Shard shard = ParseShard(options.shard);
   ThreadsFor(options.threads);  // refused before worlds are built
   const Inputs inputs(plan);
   InstallInterruptHandler();
@@ -101,7 +88,8 @@ Command AddRun(CLI::App& program) {
                      "Where trained networks are kept for all sweeps; default results/cache");
   parser->add_option("--threads", options->threads, "Threads; 0, the default: all processors");
   parser->add_option("--shard", options->shard,
-                     "I/N, I from 1 to N: fly the I-th of N parts, e.g. 1/4; 'ed3r merge' joins them");
+                     "I/N: fly one of N parts, e.g. 1/4, counted from 1 to N or from 0 to N-1 (0/N is N/N); "
+                     "'ed3r merge' joins them");
   parser->add_flag("--quiet", options->quiet, "Neither progress nor table");
   return {parser, [options] { return Run(*options); }};
 }
