@@ -23,6 +23,10 @@ struct EnumNames<PerceptionTier> {
                                                         {PerceptionTier::kPixels, "pixels"}};
 };
 
+// On the RBS row, with the values frozen in sweeps/calibration/frozen.yaml.
+inline constexpr std::string_view kCalibratedSource = "calibrated";
+inline constexpr std::string_view kAssumedSource = "assumed";
+
 // Response of one detection model.
 struct ResponseConfig {
   double half_signal = 0.000348;
@@ -33,31 +37,30 @@ struct ResponseConfig {
 
   template <class Self, class Visitor>
   static void Describe(Self& self, Visitor&& visit) {
-    constexpr std::string_view kSource = "calibrated (A36)";
     visit("half_signal", self.half_signal,
           {.min = 1e-7,
            .max = 1,
-           .source = kSource,
+           .source = kCalibratedSource,
            .meaning = "signal (share of the image) at half the ceiling"});
     visit("slope", self.slope,
           {.unit = "logit/decade",
            .min = 0.1,
            .max = 50,
-           .source = kSource,
+           .source = kCalibratedSource,
            .meaning = "growth of the logit with the signal"});
     visit("ceiling", self.ceiling,
-          {.min = 0.5, .max = 1, .source = kSource, .meaning = "largest confidence"});
+          {.min = 0.5, .max = 1, .source = kCalibratedSource, .meaning = "largest confidence"});
     visit("view_sigma", self.view_sigma,
           {.unit = "logit",
            .min = 0,
            .max = 10,
-           .source = kSource,
+           .source = kAssumedSource,
            .meaning = "fluctuation from timestep to timestep"});
     visit("frame_sigma", self.frame_sigma,
           {.unit = "logit",
            .min = 0,
            .max = 10,
-           .source = kSource,
+           .source = kAssumedSource,
            .meaning = "fluctuation from frame to frame"});
   }
 };
@@ -80,25 +83,24 @@ struct PerceptionConfig {
 
   template <class Self, class Visitor>
   static void Describe(Self& self, Visitor&& visit) {
-    constexpr std::string_view kSource = "calibrated (A36)";
     visit("tier", self.tier, {.source = "none in the paper", .meaning = "how confidences are made"});
     visit("frame_threshold", self.frame_threshold,
           {.min = 0, .max = 1, .source = "R33", .meaning = "a frame's confidence below this counts as 0"});
     visit("fire_weight", self.fire_weight,
-          {.min = 0, .max = 10, .source = kSource, .meaning = "weight of visible flame"});
+          {.min = 0, .max = 10, .source = "unit of weight", .meaning = "weight of visible flame"});
     visit("smoke_weight", self.smoke_weight,
-          {.min = 0, .max = 10, .source = kSource, .meaning = "weight of visible smoke"});
+          {.min = 0, .max = 10, .source = kCalibratedSource, .meaning = "weight of visible smoke"});
     visit("haze_range_m", self.haze_range_m,
           {.unit = "m",
            .min = 50,
            .max = 1e6,
-           .source = kSource,
+           .source = kCalibratedSource,
            .meaning = "distance at which haze leaves 1/e of a signal"});
     visit("distractors_per_km2", self.distractors_per_km2,
           {.unit = "1/km^2",
            .min = 0,
            .max = 5000,
-           .source = "R34",
+           .source = "R34, calibrated",
            .meaning = "sources of false confidence, drawn per mission"});
     visit("distractor_radius_m", self.distractor_radius_m,
           {.unit = "m", .min = 0.1, .max = 20, .source = "R34", .meaning = "mean radius of a distractor"});
@@ -108,7 +110,7 @@ struct PerceptionConfig {
           {.unit = "deg",
            .min = 0,
            .max = 90,
-           .source = "R34",
+           .source = "R34, calibrated",
            .meaning = "camera tilt above which distractors mislead"});
     visit.Nested("full", self.full);
     visit.Nested("quantized", self.quantized);

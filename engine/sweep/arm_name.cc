@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::string_view kStrategyKey = "mission.strategy";
 constexpr std::string_view kThresholdKey = "agents.eta_min";
-constexpr std::string_view kWorldKey = "mission.world";
 
 std::string Leaf(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
@@ -28,6 +27,14 @@ std::string StrategyName(const Config& config) {
   return fmt::format("ed3r-{:.10g}", 100.0 * config.agents.eta_min);
 }
 
+// A value as it stands in a name, where '@' sets off the variant.
+std::string ValueInName(const Setting& setting) {
+  if (!NamesAFile(setting.key)) return setting.canonical;
+  std::string stem = std::filesystem::path(setting.canonical).stem().string();
+  std::replace(stem.begin(), stem.end(), '@', '_');
+  return stem;
+}
+
 // What the points set, but for the keys in `told`: "heavy", "cell_m=2".
 void AppendPoints(const std::vector<const AxisPoint*>& points, const std::set<std::string>& axis_keys,
                   std::initializer_list<std::string_view> told, std::vector<std::string>& parts) {
@@ -38,10 +45,7 @@ void AppendPoints(const std::vector<const AxisPoint*>& points, const std::set<st
     }
     for (const Setting& setting : point->settings) {
       if (std::find(told.begin(), told.end(), setting.key) != told.end()) continue;
-      const std::string value = setting.key == kWorldKey
-                                    ? std::filesystem::path(setting.canonical).stem().string()
-                                    : setting.canonical;
-      parts.push_back(fmt::format("{}={}", ShortKey(setting.key, axis_keys), value));
+      parts.push_back(fmt::format("{}={}", ShortKey(setting.key, axis_keys), ValueInName(setting)));
     }
   }
 }

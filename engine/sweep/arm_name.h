@@ -13,10 +13,10 @@ namespace ed3r {
 
 // The name of the arm at one point of each axis: the points' parts, joined by commas. A named point of a
 // `list` gives its name, which stands for all that it sets. Any other setting gives "key=value", with the
-// last part of the key where that is unambiguous among the axes. The strategy comes first: random is
-// "warmup", ed3r is "ed3r-75" with eta_min in percent, others their own name; it is left out where a list
-// names the points and no axis of its own varies it. A training stage that varies no strategy has its own
-// name there.
+// last part of the key where that is unambiguous among the axes, and a file without its folder and ending. The
+// strategy comes first: random is "warmup", ed3r is "ed3r-75" with eta_min in percent, others their own name; it
+// is left out where a list names the points and no axis of its own varies it. A training stage that varies no
+// strategy has its own name there.
 //   rbs    ed3r-75    rbs,path_loss_exponent=3.2    rbs,light    training,eta_min=0.65
 // `axis_keys` are the keys that the stage's axes set.
 std::string ArmName(const Stage& stage, const Config& config, const std::vector<const AxisPoint*>& points,

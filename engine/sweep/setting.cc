@@ -13,10 +13,14 @@
 namespace ed3r {
 namespace {
 
-constexpr std::string_view kFileKeys[] = {"mission.world", "perception.detector.full",
-                                          "perception.detector.quantized"};
+constexpr std::string_view kWorldKey = "mission.world";
+constexpr std::string_view kDetectorKeys[] = {"perception.detector.full", "perception.detector.quantized"};
 constexpr std::string_view kBuiltIn = "builtin";  // a detector that is no file
 constexpr std::string_view kAirframeKey = "robot";
+
+bool IsDetector(std::string_view key) {
+  return std::find(std::begin(kDetectorKeys), std::end(kDetectorKeys), key) != std::end(kDetectorKeys);
+}
 
 std::filesystem::path Absolute(const std::string& path, const std::string& at) {
   std::error_code error;
@@ -49,7 +53,7 @@ Setting SettingReader::Read(const std::string& written_key, const std::string& k
   if (check_) {
     if (const std::string problem = check_(setting.key, text); !problem.empty()) FailAt(at, problem);
   }
-  if (NamesAFile(setting.key) && text != kBuiltIn) {
+  if (setting.key == kWorldKey || (IsDetector(setting.key) && text != kBuiltIn)) {
     ResolveFile(setting);
   } else {
     setting.text = setting.canonical = GetParameter(scratch, setting.key);  // 1e0, 1.0 and 1 are one value
@@ -57,9 +61,7 @@ Setting SettingReader::Read(const std::string& written_key, const std::string& k
   return setting;
 }
 
-bool NamesAFile(std::string_view key) {
-  return std::find(std::begin(kFileKeys), std::end(kFileKeys), key) != std::end(kFileKeys);
-}
+bool NamesAFile(std::string_view key) { return key == kWorldKey || IsDetector(key); }
 
 void SettingReader::ResolveFile(Setting& setting) const {
   const std::filesystem::path written(setting.text);
@@ -68,7 +70,7 @@ void SettingReader::ResolveFile(Setting& setting) const {
   if (!std::filesystem::is_regular_file(setting.text, error))
     FailAt(setting.at,
            fmt::format("{}: '{}' is not a file; looked for '{}'{}", setting.key, setting.canonical,
-                       setting.text, setting.key == kFileKeys[0] ? "" : "; 'builtin' is allowed too"));
+                       setting.text, IsDetector(setting.key) ? "; 'builtin' is allowed too" : ""));
   if (written.is_absolute() || keep_absolute_) {
     setting.canonical = setting.text;
   } else {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "engine/config/parameters.h"
@@ -35,6 +36,17 @@ TEST(CalibrationTest, DefaultsAreTheFrozenOnes) {
     ++compared;
   }
   EXPECT_GE(compared, 8);
+}
+
+TEST(CalibrationTest, ExactlyTheFrozenParametersSayThatTheyAreCalibrated) {
+  std::set<std::string> frozen, said;
+  for (const auto& entry : YAML::LoadFile(kFolder + "calibration/frozen.yaml")) {
+    const std::string key = entry.first.as<std::string>();
+    if (key != "world_sha256") frozen.insert(key);
+  }
+  for (const ParameterInfo& parameter : Parameters())
+    if (parameter.source.find("calibrated") != std::string::npos) said.insert(parameter.key);
+  EXPECT_EQ(said, frozen);
 }
 
 TEST(CalibrationTest, TheWorldIsTheOneThatWasCalibratedIn) {

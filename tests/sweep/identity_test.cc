@@ -112,6 +112,23 @@ TEST(IdentityTest, ADetectorThatIsNoFileIsRefusedBeforeAnythingElse) {
   }
 }
 
+TEST(IdentityTest, OnlyADetectorMayBeBuiltIn) {
+  const std::string said = Refusal("name: x\nmissions: 1\nset: {mission.world: builtin}\n");
+  EXPECT_NE(said.find("mission.world: 'builtin' is not a file"), std::string::npos) << said;
+  EXPECT_EQ(said.find("allowed too"), std::string::npos) << said;
+}
+
+TEST(IdentityTest, FilesOnAnAxisGiveTheirStemsToTheArms) {
+  const ScratchFolder scratch;
+  for (const char* file : {"w.yaml", "nets/a.onnx", "nets/b@2.onnx"}) scratch.Write(file, "");
+  const SweepPlan plan =
+      LoadSweep(scratch.Write("x.yaml",
+                              "name: x\nmissions: 1\nset: {mission.world: w.yaml, strategy: rbs}\n"
+                              "sweep: {perception.detector.full: [builtin, nets/a.onnx, nets/b@2.onnx]}\n"));
+  EXPECT_EQ(ArmNames(plan.stages[0]),
+            (std::vector<std::string>{"rbs,full=builtin", "rbs,full=a", "rbs,full=b_2"}));
+}
+
 TEST(IdentityTest, AbsoluteWorldsStayAbsolute) {
   const ScratchFolder scratch;
   const std::string world = scratch.Write("elsewhere/w.yaml", "w");
