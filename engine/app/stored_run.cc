@@ -14,6 +14,17 @@
 namespace ed3r {
 namespace {
 
+std::string JoinedLines(const std::vector<std::string>& lines) {
+  return fmt::format("{}", fmt::join(lines, "\n"));
+}
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
 SweepPlan ReloadPlan(ResultReader& reader) {
   const std::vector<Session> sessions = reader.Sessions();
   if (sessions.empty() || !sessions.back().notes.contains("sweep file"))
@@ -22,9 +33,8 @@ SweepPlan ReloadPlan(ResultReader& reader) {
   SweepArguments arguments;
   arguments.file = notes.at("sweep file");
   arguments.seed = notes.at("sweep --seed");
-  arguments.missions = notes.at("sweep --missions");
-  std::istringstream settings(notes.at("sweep --set"));
-  for (std::string setting; std::getline(settings, setting);) arguments.set.push_back(setting);
+  arguments.missions = Lines(notes.at("sweep --missions"));
+  arguments.set = Lines(notes.at("sweep --set"));
   SweepPlan plan = arguments.Load();
   if (plan.CanonicalText() != reader.StoredRecipe().plan_text)
     throw UserError(fmt::format("{}: {} has changed since it was flown", reader.dir(), arguments.file));
@@ -59,12 +69,10 @@ std::string UnknownMission(const std::string& mission, const std::string& arm, b
 }  // namespace
 
 std::map<std::string, std::string> NotesOf(const SweepArguments& arguments) {
-  std::string settings;
-  for (const std::string& setting : arguments.set) settings += setting + "\n";
   return {{"sweep file", std::filesystem::absolute(arguments.file).lexically_normal().string()},
-          {"sweep --set", settings},
+          {"sweep --set", JoinedLines(arguments.set)},
           {"sweep --seed", arguments.seed},
-          {"sweep --missions", arguments.missions}};
+          {"sweep --missions", JoinedLines(arguments.missions)}};
 }
 
 StoredRun::StoredRun(const std::string& dir, const std::string& cache_dir)

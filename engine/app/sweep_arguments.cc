@@ -25,6 +25,16 @@ std::optional<Integer> ParseOption(const char* option, const std::string& text, 
   return value;
 }
 
+MissionsOverride ParseMissions(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const bool named = equals != std::string::npos;
+  const std::string number = text.substr(named ? equals + 1 : 0);
+  const auto value = ParseOption<int>("--missions", number, 1, static_cast<int>(kMaxMissions));
+  if (!value || equals == 0)
+    throw UserError(fmt::format("--missions: '{}' is not allowed; allowed: N or STAGE=N", text));
+  return {named ? text.substr(0, equals) : "", *value};
+}
+
 std::string CheckMetricName(const std::string& name) {
   std::vector<std::string> names;
   for (const MetricDefinition& metric : MetricDefinitions())
@@ -41,14 +51,17 @@ void SweepArguments::AddTo(CLI::App& parser) {
   parser.add_option("--set", set, "KEY=VALUE; wins over the file; 'ed3r params' lists the keys")
       ->allow_extra_args(false);
   parser.add_option("--seed", seed, "Seed in place of the file's");
-  parser.add_option("--missions", missions, "Missions per arm in place of the file's");
+  parser
+      .add_option("--missions", missions,
+                  "N or STAGE=N: missions per arm in place of the file's, in every stage or in one")
+      ->allow_extra_args(false);
 }
 
 SweepPlan SweepArguments::Load() const {
   SweepOverrides overrides;
   overrides.set = set;
   overrides.seed = ParseOption<std::uint64_t>("--seed", seed, 0, UINT64_MAX);
-  overrides.missions = ParseOption<int>("--missions", missions, 1, static_cast<int>(kMaxMissions));
+  for (const std::string& text : missions) overrides.missions.push_back(ParseMissions(text));
   return LoadSweep(file, overrides, [](const std::string& key, const std::string& value) {
     if (key == "precision.metric") return CheckMetricName(value);
     return key == "mission.strategy" ? CheckStrategyName(value) : std::string();

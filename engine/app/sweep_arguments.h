@@ -12,8 +12,8 @@ namespace ed3r {
 struct SweepArguments {
   std::string file;
   std::vector<std::string> set;
-  std::string seed;      // "" for the file's own
-  std::string missions;  // likewise
+  std::string seed;                   // "" for the file's own
+  std::vector<std::string> missions;  // "N" or "STAGE=N"; empty for the file's own
 
   void AddTo(CLI::App& parser);
   SweepPlan Load() const;  // throws UserError

@@ -153,22 +153,33 @@ std::vector<T> Concatenated(const std::optional<std::vector<T>>& a, const std::o
 }
 
 // How many missions each arm of a stage flies, and where that is said.
-WrittenCount MissionsOf(const StageSource& stage, const SweepSource& source,
-                        const std::optional<WrittenCount>& override) {
+WrittenCount MissionsOf(const StageSource& stage, const SweepSource& source, const MissionCounts& overrides) {
   if (stage.kind == StageKind::kTrain) return {0, stage.at};
-  if (override) return *override;
+  for (const std::string& name : {stage.name, std::string()})
+    if (const auto found = overrides.find(name); found != overrides.end()) return found->second;
   if (stage.section.missions) return *stage.section.missions;
   if (source.top.missions) return *source.top.missions;
   FailAt(stage.at,
          fmt::format("missions: is missing in stage '{}'; allowed: 1 .. {}", stage.name, kMaxMissions));
 }
 
+void CheckStagesOf(const MissionCounts& missions, const std::vector<StageSource>& stages) {
+  std::vector<std::string> flying;
+  for (const StageSource& stage : stages)
+    if (stage.kind == StageKind::kFly) flying.push_back(stage.name);
+  for (const auto& [name, count] : missions)
+    if (!name.empty() && std::find(flying.begin(), flying.end(), name) == flying.end())
+      FailAt(count.at,
+             fmt::format("'{}' is not a stage that flies; allowed: {}", name, fmt::join(flying, " | ")));
+}
+
 }  // namespace
 
 std::vector<Stage> ExpandStages(const SweepSource& source, const std::vector<Setting>& overrides,
-                                const std::optional<WrittenCount>& missions) {
+                                const MissionCounts& missions) {
   std::vector<StageSource> written = source.stages.value_or(std::vector<StageSource>());
   if (!source.stages) written.push_back({"online", source.at, StageKind::kFly, {}, {}});
+  CheckStagesOf(missions, written);
   std::vector<Stage> stages;
   std::int64_t all_arms = 0;
   std::int64_t all_missions = 0;

@@ -34,12 +34,16 @@ std::vector<Setting> ReadOverrides(const std::vector<std::string>& written, cons
   return settings;
 }
 
-std::optional<WrittenCount> CheckedMissions(const std::optional<int>& missions) {
-  if (!missions) return std::nullopt;
-  const std::string at = fmt::format("--missions {}", *missions);
-  if (*missions < 1 || *missions > kMaxMissions)
-    FailAt(at, fmt::format("missions: '{}' is not allowed; allowed: 1 .. {}", *missions, kMaxMissions));
-  return WrittenCount{*missions, at};
+MissionCounts CheckedMissions(const std::vector<MissionsOverride>& overrides) {
+  MissionCounts counts;
+  for (const auto& [stage, value] : overrides) {
+    const std::string at = fmt::format("--missions {}{}{}", stage, stage.empty() ? "" : "=", value);
+    if (value < 1 || value > kMaxMissions)
+      FailAt(at, fmt::format("missions: '{}' is not allowed; allowed: 1 .. {}", value, kMaxMissions));
+    const auto [first, is_new] = counts.emplace(stage, WrittenCount{value, at});
+    if (!is_new) FailAt(at, fmt::format("missions: is said twice, first by {}", first->second.at));
+  }
+  return counts;
 }
 
 }  // namespace

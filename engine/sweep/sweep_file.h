@@ -20,8 +20,8 @@
 //     - {name: online, after: [training], set: {strategy: ed3r}, sweep: {agents.eta_min: [0.65, 0.75]}}
 //
 // A stage's set, sweep and where add to those of the top level; its values win over those of the top level's
-// set. Merging of base files: sweep_source.h. Names of arms: arm_name.h. World files are relative to the file
-// that they are written in, after --set to the present folder; the default one to the sweep file.
+// set. Merging of base files: sweep_source.h. Names of arms: arm_name.h. Files (worlds, detectors) are relative
+// to the file that they are written in, after --set to the present folder; the default world to the sweep file.
 // Anything else is refused: unknown and duplicate keys, wrong types, values out of range, empty axes, a fixed
 // value or --set for a parameter that an axis varies, YAML anchors, aliases and tags (yaml_reader.h).
 #pragma once
@@ -36,10 +36,15 @@
 
 namespace ed3r {
 
+struct MissionsOverride {
+  std::string stage;  // "" for every flying stage that no other override names
+  int value = 0;      // per arm
+};
+
 struct SweepOverrides {
   std::vector<std::string> set;  // "key=value", each key once; wins over every `set`, but may not set an axis
   std::optional<std::uint64_t> seed;
-  std::optional<int> missions;  // per arm, in every flying stage
+  std::vector<MissionsOverride> missions;
 };
 
 constexpr std::int64_t kMaxMissions = 10'000'000;  // a plan with more is refused

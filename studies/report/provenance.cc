@@ -25,11 +25,10 @@ std::string SweepFileOf(const std::map<std::string, std::string>& notes) {
 std::string CommandOf(const std::map<std::string, std::string>& notes, const std::string& dir) {
   if (!notes.contains("sweep file")) return "";
   std::string command = "ed3r run " + SweepFileOf(notes);
-  for (const char* option : {"--seed", "--missions"})
-    if (const std::string value = Note(notes, std::string("sweep ") + option); !value.empty())
-      command += std::string(" ") + option + " " + value;
-  std::istringstream settings(Note(notes, "sweep --set"));
-  for (std::string setting; std::getline(settings, setting);) command += " --set " + setting;
+  for (const char* option : {"--seed", "--missions", "--set"}) {
+    std::istringstream values(Note(notes, std::string("sweep ") + option));
+    for (std::string value; std::getline(values, value);) command += std::string(" ") + option + " " + value;
+  }
   return command + " --out " + dir;
 }
 

@@ -168,6 +168,9 @@ TEST(RunTest, BadInputWritesNothing) {
        "| rbs | ed3r | "
        "ablation-1 | ablation-2 | ablation-3 | ablation-4 | ecd2r; did you mean rbs?\n"},
       {"--missions 0", "--missions: '0' is not allowed; allowed: 1 .. 10000000\n"},
+      {"--missions online=x", "--missions: 'x' is not allowed; allowed: 1 .. 10000000\n"},
+      {"--missions =3", "--missions: '=3' is not allowed; allowed: N or STAGE=N\n"},
+      {"--missions warmup=3", "--missions warmup=3: 'warmup' is not a stage that flies; allowed: online\n"},
       {"--seed x", "--seed: 'x' is not allowed; allowed: 0 .. 18446744073709551615\n"},
   };
   for (const auto& [arguments, message] : cases) {

@@ -23,19 +23,36 @@ TEST(OverridesTest, WinOverSetAtEveryLevel) {
 }
 
 TEST(OverridesTest, SeedAndMissions) {
-  const SweepPlan plan = LoadText(kStudy, {.set = {}, .seed = 77, .missions = 4});
+  const SweepPlan plan = LoadText(kStudy, {.set = {}, .seed = 77, .missions = {{"", 4}}});
   EXPECT_EQ(plan.seed, 77u);
   EXPECT_EQ(plan.Missions(), 8);
-  EXPECT_EQ(Refusal(kStudy, {.set = {}, .seed = {}, .missions = 0}),
+  EXPECT_EQ(Refusal(kStudy, {.set = {}, .seed = {}, .missions = {{"", 0}}}),
             "--missions 0: missions: '0' is not allowed; allowed: 1 .. 10000000");
   EXPECT_EQ(
-      Refusal(kStudy, {.set = {}, .seed = {}, .missions = 9'000'000}),
+      Refusal(kStudy, {.set = {}, .seed = {}, .missions = {{"", 9'000'000}}}),
       "--missions 9000000: 18000000 missions in the stages up to 'online' are not allowed; allowed: at most "
       "10000000 in a sweep");
 }
 
 TEST(OverridesTest, StandInForMissingMissions) {
-  EXPECT_EQ(LoadText("name: x\n", {.set = {}, .seed = {}, .missions = 4}).Missions(), 4);
+  EXPECT_EQ(LoadText("name: x\n", {.set = {}, .seed = {}, .missions = {{"", 4}}}).Missions(), 4);
+}
+
+TEST(OverridesTest, MissionsOfOneStage) {
+  const char* kStages =
+      "name: x\nmissions: 3\nstages:\n  - {name: a}\n  - {name: b}\n  - {name: t, kind: train, after: a}\n";
+  const auto counts = [&](std::vector<MissionsOverride> missions) {
+    const SweepPlan plan = LoadText(kStages, {.set = {}, .seed = {}, .missions = std::move(missions)});
+    return std::pair(plan.stages[0].missions, plan.stages[1].missions);
+  };
+  EXPECT_EQ(counts({{"b", 40}}), std::pair(3, 40));
+  EXPECT_EQ(counts({{"b", 40}, {"", 5}}), std::pair(5, 40));
+  EXPECT_EQ(Refusal(kStages, {.set = {}, .seed = {}, .missions = {{"c", 4}}}),
+            "--missions c=4: 'c' is not a stage that flies; allowed: a | b");
+  EXPECT_EQ(Refusal(kStages, {.set = {}, .seed = {}, .missions = {{"t", 4}}}),
+            "--missions t=4: 't' is not a stage that flies; allowed: a | b");
+  EXPECT_EQ(Refusal(kStages, {.set = {}, .seed = {}, .missions = {{"b", 4}, {"b", 5}}}),
+            "--missions b=5: missions: is said twice, first by --missions b=4");
 }
 
 TEST(OverridesTest, RefusalsHaveNoFile) {

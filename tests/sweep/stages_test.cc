@@ -69,7 +69,7 @@ TEST(StagesTest, ContradictionsAcrossLevelsAreRefused) {
 }
 
 TEST(StagesTest, MissionsOverrideLeavesTrainingAlone) {
-  const SweepPlan plan = LoadText(kStudy, {.set = {}, .seed = {}, .missions = 3});
+  const SweepPlan plan = LoadText(kStudy, {.set = {}, .seed = {}, .missions = {{"", 3}}});
   EXPECT_EQ(plan.stages[0].missions, 3);
   EXPECT_EQ(plan.stages[1].missions, 0);
   EXPECT_EQ(plan.stages[2].missions, 3);
