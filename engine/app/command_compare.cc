@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "engine/app/commands.h"
 #include "engine/core/check.h"
+#include "studies/metrics/number_text.h"
 #include "studies/report/files.h"
 #include "studies/report/load.h"
 #include "studies/variants/variants.h"
@@ -34,17 +34,14 @@ nlohmann::ordered_json JsonOf(const VariantStudy& study) {
   nlohmann::ordered_json json = {{"runs", study.variants},
                                  {"differences", nlohmann::ordered_json::array()},
                                  {"changed_verdicts", nlohmann::ordered_json::array()}};
-  const auto number = [](double value) {
-    return std::isnan(value) ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(value);
-  };
   for (const VariantDifference& d : study.differences)
     json["differences"].push_back({{"arm", d.arm},
                                    {"run", d.variant},
                                    {"metric", d.metric},
-                                   {"base", number(d.base)},
-                                   {"difference", number(d.difference)},
-                                   {"lo", number(d.lo)},
-                                   {"hi", number(d.hi)},
+                                   {"base", JsonNumber(d.base)},
+                                   {"difference", JsonNumber(d.difference)},
+                                   {"lo", JsonNumber(d.lo)},
+                                   {"hi", JsonNumber(d.hi)},
                                    {"pairs", d.pairs},
                                    {"base_networks", d.base_networks},
                                    {"networks", d.networks}});

@@ -10,6 +10,7 @@
 #include "studies/detection/difference.h"
 #include "studies/detection/frame_set.h"
 #include "studies/detection/scores.h"
+#include "studies/metrics/number_text.h"
 
 namespace ed3r {
 namespace {
@@ -34,14 +35,12 @@ Confidences Look(const DetectorPair& detectors, const FrameStack& frames) {
   return found;
 }
 
-Json Number(double value) { return std::isnan(value) ? Json(nullptr) : Json(value); }
-
 Json JsonOf(const DetectionScores& s) {
-  return {{"auc", Number(s.auc)},
-          {"accuracy", Number(s.accuracy)},
-          {"accuracy_lo", Number(s.accuracy_interval.lo)},
-          {"accuracy_hi", Number(s.accuracy_interval.hi)},
-          {"calibration_error", Number(s.calibration_error)},
+  return {{"auc", JsonNumber(s.auc)},
+          {"accuracy", JsonNumber(s.accuracy)},
+          {"accuracy_lo", JsonNumber(s.accuracy_interval.lo)},
+          {"accuracy_hi", JsonNumber(s.accuracy_interval.hi)},
+          {"calibration_error", JsonNumber(s.calibration_error)},
           {"true_positives", s.true_positives},
           {"false_negatives", s.false_negatives},
           {"false_positives", s.false_positives},
@@ -49,7 +48,8 @@ Json JsonOf(const DetectionScores& s) {
 }
 
 Json JsonOf(const Difference& d) {
-  return {{"mean", Number(d.value)}, {"lo", Number(d.interval.lo)}, {"hi", Number(d.interval.hi)}};
+  return {
+      {"mean", JsonNumber(d.value)}, {"lo", JsonNumber(d.interval.lo)}, {"hi", JsonNumber(d.interval.hi)}};
 }
 
 Json JsonOf(const DetectorDifference& d) {

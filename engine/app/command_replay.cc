@@ -13,6 +13,7 @@
 #include "engine/core/check.h"
 #include "engine/store/digest.h"
 #include "engine/world/map_picture.h"
+#include "studies/metrics/number_text.h"
 
 namespace ed3r {
 namespace {
@@ -39,7 +40,7 @@ class TraceFile : public TraceSink {
   std::ofstream file_;
 };
 
-std::string CellOf(std::string_view, double value) { return fmt::format("{}", value); }
+std::string CellOf(std::string_view, double value) { return CsvNumber(value); }
 
 std::string CellOf(std::string_view column, std::int64_t value) {
   const std::string_view name = CodeName(column, value);

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "studies/metrics/metrics.h"
+#include "studies/metrics/number_text.h"
 #include "studies/paper/csv.h"
 
 namespace ed3r {
@@ -32,8 +31,6 @@ void AddPoints(const ArmData& some, std::vector<ConvergencePoint>& points) {
                       HalfWidth(over_missions[metric])});
 }
 
-std::string NumberOrEmpty(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
-
 }  // namespace
 
 std::vector<ConvergencePoint> Convergence(std::span<const ArmData> arms) {
@@ -51,8 +48,8 @@ std::string ConvergenceCsv(const std::vector<ConvergencePoint>& points) {
   std::string csv = "stage,arm,metric,missions,networks,value,half_width,half_width_missions\n";
   for (const ConvergencePoint& point : points)
     csv += fmt::format("{},{},{},{},{},{},{},{}\n", CsvField(point.stage), CsvField(point.arm), point.metric,
-                       point.missions, point.networks, NumberOrEmpty(point.value),
-                       NumberOrEmpty(point.half_width), NumberOrEmpty(point.half_width_missions));
+                       point.missions, point.networks, CsvNumber(point.value), CsvNumber(point.half_width),
+                       CsvNumber(point.half_width_missions));
   return csv;
 }
 

@@ -1,5 +1,7 @@
 #include "studies/claims/resampled_arms.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,6 +29,11 @@ const ArmData* FindArm(const std::vector<const ArmData*>& arms, std::string_view
   for (const ArmData* arm : arms)
     if (arm->name == name || P85Name(arm->name) == name) return arm;
   return nullptr;
+}
+
+// Whether `name` is the P85 group of an arm with too few missions for one.
+bool IsSmallGroup(const ArmData& arm, const std::string& name) {
+  return arm.name != name && SizeOfP85(arm.missions.size()) < kFewestInP85;
 }
 
 // What mission adds to the two totals of a metric. Look-forward accuracy is relative to the worst mission at
@@ -79,7 +86,7 @@ struct ResampledArms::View {
     if (is_p85) {
       std::int64_t all = 0;
       for (std::size_t i = 0; i < unit.size(); ++i) all += count(i);
-      left = (all * kP85Percent + 50) / 100;
+      left = static_cast<std::int64_t>(SizeOfP85(static_cast<std::size_t>(all)));
     }
     const std::size_t columns_per_mission = width();
     for (std::size_t i = 0; i < unit.size() && left > 0; ++i) {
@@ -107,7 +114,8 @@ ResampledArms::ResampledArms(std::span<const ArmData> arms, const std::vector<Ce
 
   std::map<std::string, std::vector<std::size_t>> wanted;
   for (const Cell& cell : cells)
-    if (FindArm(arms_, cell.arm) != nullptr) wanted[cell.arm].push_back(cell.metric);
+    if (const ArmData* arm = FindArm(arms_, cell.arm); arm != nullptr && !IsSmallGroup(*arm, cell.arm))
+      wanted[cell.arm].push_back(cell.metric);
   std::vector<View> views;
   for (const auto& [name, metrics] : wanted) views.push_back(MakeView(name, metrics));
   Resample(views);
@@ -194,7 +202,10 @@ void ResampledArms::Resample(const std::vector<View>& views) {
 std::vector<std::string> ResampledArms::Missing(const std::vector<Cell>& cells) const {
   std::set<std::string> missing;
   for (const Cell& cell : cells)
-    if (cells_.count(cell) == 0) missing.insert(cell.arm);
+    if (cells_.count(cell) == 0)
+      missing.insert(FindArm(arms_, cell.arm) == nullptr
+                         ? cell.arm
+                         : fmt::format("{} of at least {} missions", cell.arm, kFewestInP85));
   return {missing.begin(), missing.end()};
 }
 

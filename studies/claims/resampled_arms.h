@@ -18,6 +18,9 @@ namespace ed3r {
 // Enough for percentiles of a 95 % interval; p-values rest on standard deviations, known to 1.6 % then.
 inline constexpr int kResamples = 2000;
 
+// A P85 group of fewer missions says nothing that can be held against the paper's, of 128.
+inline constexpr std::size_t kFewestInP85 = 20;
+
 // The arms of the paper among `arms`, by name (the first of a name that has missions), without copies.
 // "ed3r-p85" and its like stand for the P85 group of their arm: in every resample its longest missions anew.
 class ResampledArms {
@@ -25,7 +28,7 @@ class ResampledArms {
   // Resamples every one of `cells` whose arm is there. `arms` must outlive this.
   ResampledArms(std::span<const ArmData> arms, const std::vector<Cell>& cells);
 
-  // The arms of `quantity` or formula that the run does not have; each once.
+  // The arms of `cells` that the run does not have, or has too few missions of for a P85 group; each once.
   std::vector<std::string> Missing(const std::vector<Cell>& cells) const;
 
   double Value(const Cell& cell) const { return cells_.at(cell).value; }

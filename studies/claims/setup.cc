@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "engine/core/check.h"
@@ -32,11 +31,20 @@ Judgement NotThere(const std::string& what) {
   return judged;
 }
 
-Judgement Counted(double ours, double paper, double slack, std::string why) {
+Judgement Counted(double ours, double paper, std::string why) {
   Judgement judged;
   judged.ours = ours, judged.paper = paper;
-  judged.verdict = std::abs(ours - paper) <= slack ? Verdict::kReproduced : Verdict::kDiffers;
+  judged.verdict = ours == paper ? Verdict::kReproduced : Verdict::kDiffers;
   judged.why = std::move(why);
+  return judged;
+}
+
+constexpr const char* kOtherLength = "another number of missions than in the paper, on purpose";
+
+// How long a run is, its owner chose: a shorter or longer one than the paper's speaks neither for nor against it.
+Judgement Length(double ours, double paper, std::string why) {
+  Judgement judged = Counted(ours, paper, std::move(why));
+  if (judged.verdict == Verdict::kDiffers) judged.verdict = Verdict::kNotMeasured, judged.why = kOtherLength;
   return judged;
 }
 
@@ -50,7 +58,7 @@ Judgement MissionsOnline(const Claim& claim, std::span<const ArmData> arms, doub
     fewest = fewest == 0 ? missions : std::min(fewest, missions);
   }
   if (fewest == 0) return NotThere("the online arms");
-  return Counted(fewest, paper, 0, "missions that every arm has flown");
+  return Length(fewest, paper, "missions that every arm has flown");
 }
 
 // 115K: printed to the thousand.
@@ -65,6 +73,8 @@ Judgement Samples(const ArmData& warmup, double paper) {
   const bool inside = judged.lo - kHalfThousand <= paper && paper <= judged.hi + kHalfThousand;
   judged.verdict = inside ? Verdict::kReproduced : Verdict::kDiffers;
   judged.why = fmt::format("{:.1f} timesteps in each of {:.0f} warm-up missions", timesteps.value, missions);
+  constexpr double kMissions = 2040;  // of which the paper took them
+  if (missions != kMissions) judged.verdict = Verdict::kNotMeasured, judged.why = kOtherLength;
   return judged;
 }
 
@@ -79,7 +89,7 @@ Judgement SitesUsed(const ArmData& warmup, std::span<const ArmData> arms, double
   }
   if (online_sites.empty()) return NotThere("the online arms");
   Judgement judged =
-      Counted(static_cast<double>(sites.size()), paper, 0,
+      Counted(static_cast<double>(sites.size()), paper,
               fmt::format("warm-up at {} sites and {} base station(s), online at {} and {}", sites.size(),
                           stations.size(), online_sites.size(), online_stations.size()));
   constexpr std::size_t kSites = 14,
@@ -97,12 +107,12 @@ Judgement JudgeSetup(const Claim& claim, std::span<const ArmData> arms) {
   if (claim.metric == "missions_online") return MissionsOnline(claim, arms, paper->value);
   if (claim.metric == "input_features") {
     const NetworkDesign& design = claim.strategy == "rc-rfnn" ? kRcNetwork : kRobotNetwork;
-    return Counted(design.inputs(), paper->value, 0, "inputs of the network that the engine trains");
+    return Counted(design.inputs(), paper->value, "inputs of the network that the engine trains");
   }
   const ArmData* warmup = FindWarmup(arms);
   if (warmup == nullptr) return NotThere("the warm-up");
   if (claim.metric == "missions_warmup")
-    return Counted(static_cast<double>(warmup->missions.size()), paper->value, 0, "warm-up missions flown");
+    return Length(static_cast<double>(warmup->missions.size()), paper->value, "warm-up missions flown");
   if (claim.metric == "samples") return Samples(*warmup, paper->value);
   ED3R_CHECK(claim.metric == "sites_used", claim.id);
   return SitesUsed(*warmup, arms, paper->value);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "studies/metrics/number_text.h"
 #include "studies/paper/csv.h"
 #include "studies/tables/layout.h"
 
@@ -58,12 +59,9 @@ std::string PText(const Judgement& judged) {
 
 // "2r 3d": verdicts of the networks alone.
 std::string NetworksText(const JudgedClaim& claim) {
-  static const std::map<Verdict, char> letters = {
-      {Verdict::kReproduced, 'r'},   {Verdict::kDirectionHolds, 'h'},    {Verdict::kDiffers, 'd'},
-      {Verdict::kNotDecidable, 'u'}, {Verdict::kPaperInconsistent, 'i'}, {Verdict::kNotMeasured, 'n'}};
   std::string text;
   for (const auto& [verdict, count] : CountByNetwork(claim))
-    text += fmt::format("{}{}{}", text.empty() ? "" : " ", count, letters.at(verdict));
+    text += fmt::format("{}{}{}", text.empty() ? "" : " ", count, LetterOf(verdict));
   return text;
 }
 
@@ -133,11 +131,8 @@ std::string Notes(const ClaimStudy& study) {
       "", kTerminalWidth);
   if (study.networks > 1) {
     notes += Wrap(fmt::format("Intervals and p values include the luck of training ({} networks, Student's "
-                              "t). alone: verdicts by "
-                              "the missions of each network alone, r reproduced, h direction holds, d "
-                              "differs, u not decidable, i "
-                              "paper inconsistent, n not measured.",
-                              study.networks),
+                              "t). alone: verdicts by the missions of each network alone, {}.",
+                              study.networks, kVerdictLetters),
                   "", kTerminalWidth);
     if (study.networks_disagree)
       notes += Wrap("Arms took turns among their networks differently: they are paired by scenario only.", "",
@@ -152,14 +147,11 @@ std::string Notes(const ClaimStudy& study) {
   return notes;
 }
 
-Json NumberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-std::string NumberOrEmpty(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
-
 Json ByNetworkJson(const JudgedClaim& judged) {
   Json counts = Json::object(), verdicts = Json::array(), ours = Json::array();
   for (const auto& [verdict, count] : CountByNetwork(judged)) counts[std::string(NameOf(verdict))] = count;
   for (const Judgement& alone : judged.by_network)
-    verdicts.push_back(NameOf(alone.verdict)), ours.push_back(NumberOrNull(alone.ours));
+    verdicts.push_back(NameOf(alone.verdict)), ours.push_back(JsonNumber(alone.ours));
   return {{"counts", counts}, {"verdicts", verdicts}, {"ours", ours}};
 }
 
@@ -192,13 +184,13 @@ Json VerdictJson(const ClaimStudy& study) {
                    {"kind", claim.kind},
                    {"claim", claim.comparison.empty() ? claim.strategy : claim.comparison},
                    {"words", claim.exact_words},
-                   {"paper", NumberOrNull(judged.all.paper)},
-                   {"ours", NumberOrNull(judged.all.ours)},
-                   {"lo", NumberOrNull(judged.all.lo)},
-                   {"hi", NumberOrNull(judged.all.hi)},
-                   {"p", NumberOrNull(judged.all.p)},
-                   {"p_holm", NumberOrNull(judged.all.p_holm)},
-                   {"p_against_holm", NumberOrNull(judged.all.p_against_holm)},
+                   {"paper", JsonNumber(judged.all.paper)},
+                   {"ours", JsonNumber(judged.all.ours)},
+                   {"lo", JsonNumber(judged.all.lo)},
+                   {"hi", JsonNumber(judged.all.hi)},
+                   {"p", JsonNumber(judged.all.p)},
+                   {"p_holm", JsonNumber(judged.all.p_holm)},
+                   {"p_against_holm", JsonNumber(judged.all.p_against_holm)},
                    {"verdict", NameOf(judged.all.verdict)},
                    {"why", judged.all.why},
                    {"by_network", ByNetworkJson(judged)}});
@@ -219,12 +211,12 @@ std::string VerdictCsv(const ClaimStudy& study) {
   for (const JudgedClaim& judged : study.claims) {
     const Claim& claim = judged.claim;
     const std::string& what = claim.comparison.empty() ? claim.strategy : claim.comparison;
-    csv += fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", claim.id, CsvField(claim.where),
-        CsvField(claim.strategy), claim.metric, claim.kind, CsvField(what), NumberOrEmpty(judged.all.paper),
-        NumberOrEmpty(judged.all.ours), NumberOrEmpty(judged.all.lo), NumberOrEmpty(judged.all.hi),
-        NumberOrEmpty(judged.all.p), NumberOrEmpty(judged.all.p_holm),
-        NumberOrEmpty(judged.all.p_against_holm), NameOf(judged.all.verdict), CsvField(judged.all.why));
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", claim.id, CsvField(claim.where),
+                       CsvField(claim.strategy), claim.metric, claim.kind, CsvField(what),
+                       CsvNumber(judged.all.paper), CsvNumber(judged.all.ours), CsvNumber(judged.all.lo),
+                       CsvNumber(judged.all.hi), CsvNumber(judged.all.p), CsvNumber(judged.all.p_holm),
+                       CsvNumber(judged.all.p_against_holm), NameOf(judged.all.verdict),
+                       CsvField(judged.all.why));
     std::map<Verdict, int> counts = CountByNetwork(judged);
     for (const Verdict verdict : kVerdicts) csv += fmt::format(",{}", counts[verdict]);
     csv += '\n';

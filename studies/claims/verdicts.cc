@@ -205,6 +205,24 @@ std::string_view NameOf(Verdict verdict) {
   return "";
 }
 
+char LetterOf(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kReproduced:
+      return 'r';
+    case Verdict::kDirectionHolds:
+      return 'h';
+    case Verdict::kDiffers:
+      return 'd';
+    case Verdict::kNotDecidable:
+      return 'u';
+    case Verdict::kPaperInconsistent:
+      return 'i';
+    case Verdict::kNotMeasured:
+      return 'n';
+  }
+  return '?';
+}
+
 ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData> arms) {
   std::vector<ParsedClaim> parsed;
   std::vector<Cell> cells;

@@ -15,7 +15,8 @@
 //                       if that is more)
 //   paper inconsistent  the paper contradicts itself here (the arithmetic is in `why`); ours is given all the
 //                       same
-//   not measured        no run can show it, or arms are missing from this one
+//   not measured        no run can show it, or arms are missing from this one, or it is too short (P85 groups) or
+//                       of another length (numbers of missions)
 //
 // Numbers of one arm have the interval of the tables (studies/metrics), so that a verdict and a table never
 // disagree. Everything that compares arms, and P85 groups, which are chosen by what happened (so that the
@@ -49,6 +50,10 @@ inline constexpr Verdict kVerdicts[] = {Verdict::kReproduced,        Verdict::kD
                                         Verdict::kDiffers,           Verdict::kNotDecidable,
                                         Verdict::kPaperInconsistent, Verdict::kNotMeasured};
 std::string_view NameOf(Verdict verdict);
+// For narrow tables, and what tells their reader which is which.
+char LetterOf(Verdict verdict);
+inline constexpr std::string_view kVerdictLetters =
+    "r reproduced, h direction holds, d differs, u not decidable, i paper inconsistent, n not measured";
 
 // NaN is "none". For an order, `ours` and `paper` are the difference in its least certain part, positive where
 // it is as claimed, and that part stands in `why`.

@@ -19,13 +19,12 @@ KnownUnseen Split(const ArmData& arm, SplitBy by) {
 
 ArmData LongestShare(const ArmData& arm, int percent) {
   ED3R_CHECK(0 <= percent && percent <= 100, "a share of the missions");
-  const std::size_t count = (arm.missions.size() * static_cast<std::size_t>(percent) + 50) / 100;
   std::vector<std::size_t> order(arm.missions.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return arm.missions[a].duration_s > arm.missions[b].duration_s;
   });
-  order.resize(count);
+  order.resize(SizeOfShare(arm.missions.size(), percent));
   std::sort(order.begin(), order.end());
   ArmData longest{.stage = arm.stage, .name = arm.name, .missions = {}};
   for (const std::size_t i : order) longest.missions.push_back(arm.missions[i]);

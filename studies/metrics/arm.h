@@ -27,14 +27,21 @@ struct KnownUnseen {
 // not in a record.
 KnownUnseen Split(const ArmData& arm, SplitBy by);
 
+// How many missions `percent` of them are, to the nearest.
+constexpr std::size_t SizeOfShare(std::size_t missions, int percent) {
+  return (missions * static_cast<std::size_t>(percent) + 50) / 100;
+}
+
 // The `percent` of the arm's missions (0..100, rounded to the nearest mission, half up) that took longest; of
 // equally long ones those that come first. Order, stage and name kept; failed and missing missions are not in
 // it.
 ArmData LongestShare(const ArmData& arm, int percent);
 
+inline constexpr int kP85Percent = 15;
+constexpr std::size_t SizeOfP85(std::size_t missions) { return SizeOfShare(missions, kP85Percent); }
+
 // The paper's P85 group: the 15 % longest missions (R30; 128 of 850), under the paper's name for it
 // ("ed3r-p85" for ed3r-75, the threshold that it goes on with, "rbs-p85" for rbs).
-inline constexpr int kP85Percent = 15;
 ArmData P85Group(const ArmData& arm);
 std::string P85Name(std::string_view arm);
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
+#include "studies/metrics/number_text.h"
 #include "studies/paper/csv.h"
 #include "studies/tables/paper_cell.h"
 
@@ -15,19 +15,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json NumberOrNull(double value) { return std::isnan(value) ? Json(nullptr) : Json(value); }
-std::string NumberOrEmpty(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
-
 Json ValueJson(const MetricValue& ours) {
-  return {{"mean", NumberOrNull(ours.value)},
-          {"lo", NumberOrNull(ours.lo)},
-          {"hi", NumberOrNull(ours.hi)},
+  return {{"mean", JsonNumber(ours.value)},
+          {"lo", JsonNumber(ours.lo)},
+          {"hi", JsonNumber(ours.hi)},
           {"n", ours.n}};
 }
 
 std::string ValueCsv(const MetricValue& ours) {
-  return fmt::format("{},{},{},{}", NumberOrEmpty(ours.value), NumberOrEmpty(ours.lo), NumberOrEmpty(ours.hi),
-                     ours.n);
+  return fmt::format("{},{},{},{}", CsvNumber(ours.value), CsvNumber(ours.lo), CsvNumber(ours.hi), ours.n);
 }
 
 struct Place {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "studies/metrics/number_text.h"
 #include "studies/paper/csv.h"
 #include "studies/tables/layout.h"
 #include "studies/tables/paper_cell.h"
@@ -68,12 +69,6 @@ bool AnyPaper(const std::vector<Cell>& row) {
     if (!cell.paper.empty()) return true;
   return false;
 }
-
-nlohmann::ordered_json NumberOrNull(double value) {
-  return std::isnan(value) ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(value);
-}
-
-std::string NumberOrEmpty(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
 }  // namespace
 
@@ -160,7 +155,7 @@ std::string CsvTable(const StudyTable& table, const std::vector<Claim>& claims) 
       const PaperCell paper = MakePaperCell(claims, arm, metric);
       csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", CsvField(arm.stage), CsvField(arm.name),
                          arm.missions, MetricDefinitions()[metric].name, MetricDefinitions()[metric].unit,
-                         NumberOrEmpty(ours.value), NumberOrEmpty(ours.lo), NumberOrEmpty(ours.hi), ours.n,
+                         CsvNumber(ours.value), CsvNumber(ours.lo), CsvNumber(ours.hi), ours.n,
                          paper.value ? paper.value->printed : "");
     }
   return csv;
@@ -177,9 +172,9 @@ nlohmann::ordered_json JsonTable(const StudyTable& table, const std::vector<Clai
       const MetricValue& ours = arm.values[metric];
       const PaperCell paper = MakePaperCell(claims, arm, metric);
       entry[std::string(MetricDefinitions()[metric].name)] = {
-          {"mean", NumberOrNull(ours.value)},
-          {"lo", NumberOrNull(ours.lo)},
-          {"hi", NumberOrNull(ours.hi)},
+          {"mean", JsonNumber(ours.value)},
+          {"lo", JsonNumber(ours.lo)},
+          {"hi", JsonNumber(ours.hi)},
           {"n", ours.n},
           {"paper",
            paper.value ? nlohmann::ordered_json(paper.value->value) : nlohmann::ordered_json(nullptr)}};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "studies/claims/verdict_tables.h"
 #include "studies/metrics/definitions.h"
 #include "studies/paper/csv.h"
 #include "studies/tables/layout.h"
@@ -13,6 +14,7 @@ namespace ed3r {
 namespace {
 
 constexpr int kArmWidth = 14, kVariantWidth = 26, kCellWidth = 26;
+constexpr int kIdWidth = 5, kClaimWidth = 55;
 
 std::string CellText(const VariantDifference& d) {
   if (std::isnan(d.difference)) return "–";
@@ -32,7 +34,7 @@ std::string DifferenceTable(const VariantStudy& study) {
       fmt::format("Variants minus '{}', paired by scenario (* interval without 0)\n", study.variants[0]);
   text += Pad("arm", kArmWidth, Align::kLeft) + Pad("variant", kVariantWidth, Align::kLeft);
   for (const char* metric : kComparedMetrics) text += Pad(heading(metric), kCellWidth, Align::kRight);
-  text += "\n" + Rule(kTerminalWidth) + "\n";
+  text += fmt::format("\n{}\n", Rule(kTerminalWidth));
   constexpr std::size_t kMetrics = std::size(kComparedMetrics);
   for (std::size_t i = 0; i < study.differences.size(); i += kMetrics) {
     const VariantDifference& first = study.differences[i];
@@ -48,24 +50,60 @@ std::string DifferenceTable(const VariantStudy& study) {
   return text;
 }
 
-std::string ChangeTable(const VariantStudy& study) {
-  if (!study.verdicts.front().HasArms()) return "";
-  std::string text =
-      fmt::format("\nClaims of the paper judged otherwise than under '{}'\n", study.variants[0]);
-  for (std::size_t v = 1; v < study.variants.size(); ++v) {
-    std::string line;
-    int count = 0, contradictions = 0;
-    for (const VerdictChange& change : study.changes) {
-      if (change.variant != study.variants[v]) continue;
-      line += fmt::format("{}{}: {} -> {}", count++ > 0 ? "; " : "", change.claim, NameOf(change.base),
-                          NameOf(change.here));
-      contradictions += change.Contradicts() ? 1 : 0;
+std::string ChangeCounts(const VariantStudy& study) {
+  std::string text;
+  for (std::size_t v = 0; v < study.variants.size(); ++v) {
+    text += fmt::format("{:>3} {}", v + 1, study.variants[v]);
+    if (v > 0) {
+      const auto here = [&](const VerdictChange& change) { return change.variant == study.variants[v]; };
+      const auto contradicts = [&](const VerdictChange& change) {
+        return here(change) && change.Contradicts();
+      };
+      text += fmt::format(": {} of {} claims, {} of them between 'holds' and 'differs'",
+                          std::count_if(study.changes.begin(), study.changes.end(), here),
+                          study.verdicts.front().claims.size(),
+                          std::count_if(study.changes.begin(), study.changes.end(), contradicts));
     }
-    text += fmt::format("{}: {} of {} claims, {} of them between 'holds' and 'differs'\n", study.variants[v],
-                        count, study.verdicts.front().claims.size(), contradictions);
-    if (count > 0) text += Wrap(line, "  ", kTerminalWidth);
+    text += "\n";
   }
   return text;
+}
+
+// Orders and comparisons that some variant judges otherwise, a row each; one letter per variant.
+std::string ChangeMatrix(const VariantStudy& study) {
+  std::string rows;
+  int alike = 0;
+  for (std::size_t i = 0; i < study.verdicts.front().claims.size(); ++i) {
+    const Claim& claim = study.verdicts.front().claims[i].claim;
+    if (claim.kind != "order" && claim.kind != "ratio") continue;
+    const auto verdict = [&](std::size_t v) { return study.verdicts[v].claims[i].all.verdict; };
+    std::string letters;
+    bool changes = false;
+    for (std::size_t v = 0; v < study.variants.size(); ++v) {
+      letters += fmt::format("{:>3}", LetterOf(verdict(v)));
+      changes |= verdict(v) != verdict(0);
+    }
+    if (!changes) {
+      ++alike;
+      continue;
+    }
+    rows += Pad(claim.id, kIdWidth, Align::kLeft) +
+            Pad(ClaimInWords(claim, kClaimWidth - 1), kClaimWidth, Align::kLeft) + letters + "\n";
+  }
+  if (rows.empty()) return "";
+  std::string heading =
+      Pad("", kIdWidth, Align::kLeft) + Pad("orders and comparisons that change", kClaimWidth, Align::kLeft);
+  for (std::size_t v = 0; v < study.variants.size(); ++v) heading += fmt::format("{:>3}", v + 1);
+  return fmt::format("\n{}\n{}\n{}", heading, Rule(DisplayWidth(heading)), rows) +
+         Wrap(fmt::format("{}. {} are judged alike in all; numbers: the table of verdicts.", kVerdictLetters,
+                          alike),
+              "", kTerminalWidth);
+}
+
+std::string ChangeTable(const VariantStudy& study) {
+  if (!study.verdicts.front().HasArms()) return "";
+  return fmt::format("\nClaims of the paper judged otherwise than under '{}'\n", study.variants[0]) +
+         ChangeCounts(study) + ChangeMatrix(study);
 }
 
 }  // namespace
@@ -84,12 +122,14 @@ std::string DifferenceCsv(const VariantStudy& study) {
 }
 
 std::string VariantVerdictCsv(const VariantStudy& study) {
-  std::string csv = "claim";
+  std::string csv = "claim,strategy,metric,kind,compared";
   for (const std::string& variant : study.variants) csv += fmt::format(",{}", CsvField(variant));
   csv += "\n";
   if (study.verdicts.empty()) return csv;
   for (std::size_t i = 0; i < study.verdicts.front().claims.size(); ++i) {
-    csv += study.verdicts.front().claims[i].claim.id;
+    const Claim& claim = study.verdicts.front().claims[i].claim;
+    csv += fmt::format("{},{},{},{},{}", claim.id, CsvField(claim.strategy), claim.metric, claim.kind,
+                       CsvField(claim.comparison));
     for (const ClaimStudy& verdicts : study.verdicts)
       csv += fmt::format(",{}", NameOf(verdicts.claims[i].all.verdict));
     csv += "\n";

@@ -61,13 +61,13 @@ std::vector<ArmData> AsVariant(std::vector<ArmData> arms, const std::string& var
 // Nothing is compared, and `variants` is empty, where the arms have no variants.
 VariantStudy CompareVariants(std::span<const ArmData> arms);
 
-// Two tables, differences and changed verdicts, in lines of at most kTerminalWidth characters; empty without variants.
+// Differences, how many verdicts change, and which orders and comparisons, in lines of at most kTerminalWidth characters; empty without variants.
 std::string VariantText(const VariantStudy& study);
 
 // Columns arm,variant,metric,base,difference,lo,hi,pairs,base_networks,networks.
 std::string DifferenceCsv(const VariantStudy& study);
 
-// Columns claim,VARIANT...: the verdict of every claim in every variant.
+// Columns claim,strategy,metric,kind,compared,VARIANT...: the verdict of every claim in every variant.
 std::string VariantVerdictCsv(const VariantStudy& study);
 
 }  // namespace ed3r

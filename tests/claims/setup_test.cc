@@ -37,10 +37,12 @@ TEST(SetupTest, OtherStudies) {
   const std::vector<ArmData> arms = {Warmup(60, 5, 56), MakeArm({"ed3r-75"}, {.missions = 850}),
                                      MakeArm({"rbs"}, {.missions = 56})};
   const Judgement missions = JudgeSetup(Find("C004"), arms);
-  EXPECT_EQ(missions.verdict, Verdict::kDiffers);
+  EXPECT_EQ(missions.verdict, Verdict::kNotMeasured);   // a shorter run contradicts nothing
   EXPECT_EQ(missions.ours, 56);                         // the arm with the fewest
   EXPECT_EQ(JudgeSetup(Find("C034"), arms).ours, 850);  // the thresholds only
   EXPECT_EQ(JudgeSetup(Find("C005"), arms).ours, 60);
+  EXPECT_EQ(JudgeSetup(Find("C005"), arms).verdict, Verdict::kNotMeasured);
+  EXPECT_EQ(JudgeSetup(Find("C006"), arms).verdict, Verdict::kNotMeasured);
   EXPECT_EQ(JudgeSetup(Find("C007"), arms).verdict, Verdict::kDiffers);
 }
 

@@ -208,6 +208,16 @@ TEST(VerdictsTest, P85GroupsAreTheLongestMissions) {
   EXPECT_EQ(VerdictOf(Reduction("ed3r-p85 / rbs-p85", "42.9"), arms), Verdict::kReproduced);
 }
 
+TEST(VerdictsTest, SmallP85GroupsAreNotMeasured) {
+  SyntheticDesign design;
+  design.missions = 129;
+  const Judgement small = JudgeOne(Energy("ed3r-p85", "28.5"), {MakeArm({"ed3r-75", 20}, design)}).all;
+  EXPECT_EQ(small.verdict, Verdict::kNotMeasured);
+  EXPECT_EQ(small.why, "not in this run: ed3r-p85 of at least 20 missions");
+  design.missions = 130;  // 19.5
+  EXPECT_NE(VerdictOf(Energy("ed3r-p85", "28.5"), {MakeArm({"ed3r-75", 20}, design)}), Verdict::kNotMeasured);
+}
+
 TEST(VerdictsTest, Frontiers) {
   std::vector<ArmData> arms;
   for (const char* name : {"ablation-1", "ablation-2", "ablation-3", "ablation-4", "ecd2r", "rbs"})

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "studies/statistics/intervals.h"
+#include "tests/claims/synthetic_run.h"
 
 namespace ed3r {
 namespace {
@@ -58,6 +59,24 @@ TEST(VariantsTest, DifferencesArePairedByScenario) {
   EXPECT_TRUE(energy.Certain()) << "a rule-based arm asks no network";
   EXPECT_EQ(DifferenceCsv(study).substr(0, 73),
             "arm,variant,metric,base,difference,lo,hi,pairs,base_networks,networks\nrbs");
+}
+
+TEST(VariantsTest, OrdersThatChangeAreARowEach) {
+  std::vector<ArmData> arms;
+  for (const auto& [variant, energy_kj] : {std::pair("base", 20.0), std::pair("heavy", 60.0)})
+    for (const ArmData& arm :
+         {MakeArm({"ed3r-75", energy_kj}), MakeArm({"ecd2r", 25}), MakeArm({"rbs", 35, 0.2, 0, false})})
+      arms.push_back(AsVariant({arm}, variant).front());
+  const VariantStudy study = CompareVariants(arms);
+  const std::string text = VariantText(study);
+  EXPECT_NE(text.find("C140 total energy: ed3r-75 < ecd2r, rbs                       h  d\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("C075"), std::string::npos) << "an order without its arms is alike in both";
+  EXPECT_NE(
+      VariantVerdictCsv(study).find(
+          "C140,ed3r-75 ecd2r rbs,total_energy_kj,order,\"ed3r-75 < ecd2r, rbs\",direction holds,differs\n"),
+      std::string::npos);
 }
 
 TEST(VariantsTest, ScenariosThatOneDidNotFlyAreLeftOut) {
