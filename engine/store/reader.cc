@@ -73,11 +73,13 @@ std::vector<FailedMission> ResultReader::Failures() {
 std::vector<Session> ResultReader::Sessions() {
   const Transaction moment(database_, Transaction::Kind::kRead);
   std::vector<Session> sessions;
-  Statement select(
-      database_,
-      "SELECT session, host, process, begun_utc, ended_utc FROM sessions ORDER BY begun_utc, session");
+  Statement select(database_,
+                   "SELECT session, host, process, begun_utc, ended_utc, flown FROM sessions LEFT JOIN "
+                   "(SELECT session, count(*) AS flown FROM timings GROUP BY session) USING (session) "
+                   "ORDER BY begun_utc, session");
   while (select.Step())
-    sessions.push_back({select.Int(0), select.Text(1), select.Int(2), select.Text(3), select.Text(4), {}});
+    sessions.push_back(
+        {select.Int(0), select.Text(1), select.Int(2), select.Text(3), select.Text(4), {}, select.Int(5)});
   Statement notes(database_, "SELECT key, value FROM session_notes WHERE session = ?");
   for (Session& session : sessions) {
     notes.Bind(0, session.id);

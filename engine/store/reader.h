@@ -39,6 +39,7 @@ struct Session {
   std::string begun_utc;
   std::string ended_utc;  // "" while it runs, or when it was killed
   std::map<std::string, std::string> notes;
+  std::int64_t missions = 0;  // that it flew and that are stored
 };
 
 // One arm of one stage. missing = planned - done - failed.

@@ -1,5 +1,6 @@
 #include "studies/report/provenance.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
@@ -8,6 +9,8 @@
 
 namespace ed3r {
 namespace {
+
+bool Flew(const Session& session) { return session.missions > 0; }
 
 std::string Note(const std::map<std::string, std::string>& notes, const std::string& key) {
   const auto found = notes.find(key);
@@ -42,8 +45,11 @@ Provenance ReadProvenance(const std::string& dir) {
   provenance.seed = std::to_string(reader.Layout().seed);
   provenance.code_version = reader.StoredRecipe().code_version;
   provenance.inputs = reader.StoredRecipe().inputs;
-  for (const Session& session : reader.Sessions())
-    provenance.sessions.push_back({session.host, session.begun_utc, session.ended_utc, session.notes});
+  const std::vector<Session> all = reader.Sessions();
+  const bool any_flew = std::any_of(all.begin(), all.end(), Flew);
+  for (const Session& session : all)
+    if (Flew(session) || !any_flew)
+      provenance.sessions.push_back({session.host, session.begun_utc, session.ended_utc, session.notes});
   if (!provenance.sessions.empty()) {
     const std::map<std::string, std::string>& notes = provenance.sessions.back().notes;
     provenance.sweep_file = SweepFileOf(notes);

@@ -10,10 +10,10 @@ namespace ed3r {
 
 struct Provenance {
   std::string dir, sweep;
-  std::string sweep_file, command;  // of the last session; "" where it left no notes
+  std::string sweep_file, command;  // of the last of `sessions`; "" where it left no notes
   std::string seed;
   std::string code_version;  // hash of the sources that results depend on
-  std::string commit;        // of the last session; "unknown" outside a checkout
+  std::string commit;        // of the last of `sessions`; "unknown" outside a checkout
   std::string digest;        // of what is stored
   std::int64_t planned = 0, stored = 0, failed = 0;
   double simulated_h = 0;                     // flown time of all missions
@@ -23,7 +23,8 @@ struct Provenance {
     std::string host, begun_utc, ended_utc;
     std::map<std::string, std::string> notes;  // machine, compiler, libraries
   };
-  std::vector<Session> sessions;  // in order of their begin
+  // In order of their begin; those that found everything flown already are left out, as they made nothing.
+  std::vector<Session> sessions;
 };
 
 // Reads the store in `dir`; the digest takes a pass over all timesteps. Throws UserError where there is no store.

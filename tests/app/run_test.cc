@@ -110,6 +110,15 @@ TEST(RunTest, ARunThatIsCompleteFliesNothingAgain) {
   EXPECT_NE(again.out.find("4 missions stored (4 before)\n"), std::string::npos) << again.out;
 }
 
+TEST(RunTest, TheManifestNamesTheSessionThatFlew) {
+  const ScratchFolder scratch;
+  Fly("rbs.yaml", "--missions 4", scratch / "run", "ED3R_SIMD=scalar");
+  Fly("rbs.yaml", "--missions 4", scratch / "run", "ED3R_SIMD=avx2");  // finds all of them flown
+  ASSERT_EQ(Ed3r(fmt::format("report {} --no-figures", (scratch / "run").string())).status, 0);
+  const std::string manifest = ReadAll(scratch / "run" / "report" / "manifest.json");
+  EXPECT_NE(manifest.find("\"simd\": \"scalar\""), std::string::npos) << manifest;
+}
+
 // Warm-up, training and every strategy of the paper, at each SIMD level this CPU has and on one and two threads.
 TEST(RunTest, TheWholePaperInSmallIsTheSameAtEverySimdLevel) {
   const ScratchFolder scratch;
