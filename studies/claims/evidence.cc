@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "studies/metrics/definitions.h"
 
@@ -42,7 +43,10 @@ Weight Weigh(const Formula& formula, double tolerance, const ResampledArms& arms
   const bool all = formula.kind == Formula::Kind::kAll;
   std::vector<Weight> parts;
   for (const Formula& part : formula.of) parts.push_back(Weigh(part, tolerance, arms));
-  const auto by_for = [](const Weight& a, const Weight& b) { return a.p_for < b.p_for; };
+  // p_for is 1 for every part that leans the other way: of those the surer one counts.
+  const auto by_for = [](const Weight& a, const Weight& b) {
+    return std::pair(a.p_for, -a.p_against) < std::pair(b.p_for, -b.p_against);
+  };
   const auto by_against = [](const Weight& a, const Weight& b) { return a.p_against < b.p_against; };
   const auto count = static_cast<double>(parts.size());
   const auto least_for = std::min_element(parts.begin(), parts.end(), by_for);
@@ -126,7 +130,7 @@ Evidence WeighNumber(const Claim& claim, const Quantity& quantity, const Resampl
   if (claim.kind != "ratio") {
     // Student's t may leave what is possible.
     if (evidence.lo < 0) evidence.lo = 0;
-    if (claim.unit == "%" && evidence.hi > 100) evidence.hi = 100;
+    if (claim.unit.starts_with('%') && evidence.hi > 100) evidence.hi = 100;
     return evidence;
   }
   evidence.directional = true;

@@ -36,21 +36,28 @@ bool IsSmallGroup(const ArmData& arm, const std::string& name) {
   return arm.name != name && SizeOfP85(arm.missions.size()) < kFewestInP85;
 }
 
-// What mission adds to the two totals of a metric. Look-forward accuracy is relative to the worst mission at
-// hand, which stays the same in every resample (as in the tables).
+// By network.
+using WorstErrors = std::map<std::int64_t, double>;
+
+// What mission adds to the two totals of a metric. Look-forward accuracy is relative to the network's worst
+// mission at hand (as in the tables), which stays the same in every resample: what is said of it holds for those
+// worst missions.
 std::pair<double, double> Contribution(const MetricDefinition& metric, const MissionRecord& mission,
-                                       double worst) {
+                                       const WorstErrors& worst_errors) {
   const double part = metric.part(mission), whole = metric.whole(mission);
   if (metric.estimate != Estimate::kLookForward) return {whole == 0 ? 0 : part, whole};
   if (whole == 0) return {0, 0};
+  const double worst = worst_errors.at(mission.network);
   return {worst > 0 ? 1 - part / whole / worst : 1, 1};
 }
 
-double WorstError(const MetricDefinition& metric, const ArmData& arm) {
-  double worst = 0;
-  for (const MissionRecord& mission : arm.missions)
+WorstErrors WorstErrorsOf(const MetricDefinition& metric, const ArmData& arm) {
+  WorstErrors worst;
+  for (const MissionRecord& mission : arm.missions) {
+    double& of_network = worst[mission.network];
     if (const double whole = metric.whole(mission); whole > 0)
-      worst = std::max(worst, metric.part(mission) / whole);
+      of_network = std::max(of_network, metric.part(mission) / whole);
+  }
   return worst;
 }
 
@@ -128,14 +135,16 @@ ResampledArms::View ResampledArms::MakeView(const std::string& name,
   const ArmData group = view.is_p85 ? P85Group(arm) : ArmData{};
   const ArmData& shown = view.is_p85 ? group : arm;
   const ArmMetrics values = ComputeMetrics(shown);
-  std::vector<double> worst;
+  std::vector<WorstErrors> worst;
   for (const std::size_t metric : metrics) {
     Resampled& cell = cells_[{name, metric}];
     cell.value = values.values[metric].value;
     cell.network_count = NetworksOf(arm).size() > 1 ? networks_ : 1;
     if (!IsTotals(MetricDefinitions()[metric].estimate)) continue;
     view.metrics.push_back(metric);
-    worst.push_back(WorstError(MetricDefinitions()[metric], shown));
+    // Of the group itself; of the arm where a network has no mission in it but may have in a resample.
+    worst.push_back(WorstErrorsOf(MetricDefinitions()[metric], shown));
+    worst.back().merge(WorstErrorsOf(MetricDefinitions()[metric], arm));
   }
   if (!view.is_p85) metrics_.emplace(name, values);
   for (const std::size_t i : FillingOrder(arm, view.is_p85)) {

@@ -27,7 +27,7 @@ bool IsOnline(const ArmData& arm) {
 
 Judgement NotThere(const std::string& what) {
   Judgement judged;
-  judged.why = "not in this run: " + what;
+  judged.why = std::string(kNotInThisRun) + what;
   return judged;
 }
 
@@ -42,23 +42,25 @@ Judgement Counted(double ours, double paper, std::string why) {
 constexpr const char* kOtherLength = "another number of missions than in the paper, on purpose";
 
 // How long a run is, its owner chose: a shorter or longer one than the paper's speaks neither for nor against it.
-Judgement Length(double ours, double paper, std::string why) {
-  Judgement judged = Counted(ours, paper, std::move(why));
-  if (judged.verdict == Verdict::kDiffers) judged.verdict = Verdict::kNotMeasured, judged.why = kOtherLength;
+Judgement Length(const ArmData& arm, double paper, std::string why) {
+  Judgement judged = Counted(static_cast<double>(arm.missions.size()), paper, std::move(why));
+  if (judged.verdict == Verdict::kReproduced) return judged;
+  judged.verdict = Verdict::kNotMeasured;
+  const bool complete = arm.failed == 0 && arm.missing == 0;
+  judged.why = complete ? kOtherLength : "missions are missing or failed";
   return judged;
 }
 
 // The fewest of the arms that are claimed.
 Judgement MissionsOnline(const Claim& claim, std::span<const ArmData> arms, double paper) {
-  double fewest = 0;
+  const ArmData* fewest = nullptr;
   for (const ArmData& arm : arms) {
     if (!IsOnline(arm)) continue;
     if (claim.strategy != "all" && claim.strategy.find(arm.name) == std::string::npos) continue;
-    const auto missions = static_cast<double>(arm.missions.size());
-    fewest = fewest == 0 ? missions : std::min(fewest, missions);
+    if (fewest == nullptr || arm.missions.size() < fewest->missions.size()) fewest = &arm;
   }
-  if (fewest == 0) return NotThere("the online arms");
-  return Length(fewest, paper, "missions that every arm has flown");
+  if (fewest == nullptr) return NotThere("the online arms");
+  return Length(*fewest, paper, "missions that every arm has flown");
 }
 
 // 115K: printed to the thousand.
@@ -111,8 +113,7 @@ Judgement JudgeSetup(const Claim& claim, std::span<const ArmData> arms) {
   }
   const ArmData* warmup = FindWarmup(arms);
   if (warmup == nullptr) return NotThere("the warm-up");
-  if (claim.metric == "missions_warmup")
-    return Length(static_cast<double>(warmup->missions.size()), paper->value, "warm-up missions flown");
+  if (claim.metric == "missions_warmup") return Length(*warmup, paper->value, "warm-up missions flown");
   if (claim.metric == "samples") return Samples(*warmup, paper->value);
   ED3R_CHECK(claim.metric == "sites_used", claim.id);
   return SitesUsed(*warmup, arms, paper->value);

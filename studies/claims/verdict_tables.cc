@@ -85,7 +85,8 @@ std::string Table(const ClaimStudy& study) {
     const std::string paper = order ? Short(judged.all.paper, true) : judged.claim.paper_value;
     const std::string about = judged.claim.source == "about" ? "~" : "";
     text += Line(judged.claim.id, ClaimInWords(judged.claim, kClaimWidth - 1), about + paper,
-                 OursText(judged.all, order), PText(judged.all), std::string(NameOf(judged.all.verdict)),
+                 OursText(judged.all, order), PText(judged.all),
+                 std::string(NameOf(judged.all.verdict)) + (judged.within_luck ? " (luck)" : ""),
                  NetworksText(judged));
   }
   return text;
@@ -97,10 +98,13 @@ std::string Summary(const ClaimStudy& study) {
   for (const Verdict verdict : kVerdicts)
     if (counts[verdict] > 0) {
       parts.push_back(fmt::format("{} {}", counts[verdict], NameOf(verdict)));
-      if (const int built = CountReproducedByConstruction(study);
-          verdict == Verdict::kReproduced && built > 0)
-        parts.back() +=
-            fmt::format(" ({} by measurement, {} hold by construction)", counts[verdict] - built, built);
+      if (verdict == Verdict::kReproduced) {
+        const int built = CountReproducedByConstruction(study), fitted = CountReproducedByCalibration(study);
+        parts.back() += fmt::format(" ({} predicted, {} calibrated on, {} by construction)",
+                                    counts[verdict] - built - fitted, fitted, built);
+      }
+      if (const int luck = CountWithinLuck(study); verdict == Verdict::kDiffers && luck > 0)
+        parts.back() += fmt::format(" ({} of them within the luck of a single network)", luck);
     }
   return Wrap(fmt::format("{} claims: {}.", study.claims.size(), fmt::join(parts, ", ")), "", kTerminalWidth);
 }
@@ -109,8 +113,10 @@ std::string Unmeasured(const ClaimStudy& study) {
   std::map<std::string, std::vector<std::string>> by_reason;
   for (const JudgedClaim& judged : study.claims)
     if (judged.all.verdict == Verdict::kNotMeasured) {
-      const bool absent = judged.all.why.starts_with("not in this run");
-      by_reason[absent ? "arms that are not in this run" : judged.all.why].push_back(judged.claim.id);
+      const bool absent = judged.all.why.starts_with(kNotInThisRun);
+      by_reason[absent ? "arms that are not in this run, or P85 groups too small for a verdict"
+                       : judged.all.why]
+          .push_back(judged.claim.id);
     }
   constexpr std::size_t kListed = 40;  // more say nothing that verdicts.csv does not say better
   std::string text;
@@ -122,18 +128,23 @@ std::string Unmeasured(const ClaimStudy& study) {
 }
 
 std::string Notes(const ClaimStudy& study) {
-  std::string notes = Wrap(
-      "An order shows the difference in its least certain part, + as claimed. Differences are paired over "
-      "scenarios; "
-      "p values are two-sided, corrected by Holm over all directional claims; with ! the opposite of the "
-      "claim is the likelier. Why each verdict: "
-      "verdicts.csv.",
-      "", kTerminalWidth);
+  std::string notes = Wrap(fmt::format("An order shows the difference in its least certain part, + as "
+                                       "claimed. Differences are paired over "
+                                       "scenarios; p values are two-sided, corrected by Holm over the "
+                                       "{} different directional claims; with ! the opposite of the claim is "
+                                       "the likelier. Why each verdict: "
+                                       "verdicts.csv.",
+                                       study.family),
+                           "", kTerminalWidth);
   if (study.networks > 1) {
-    notes += Wrap(fmt::format("Intervals and p values include the luck of training ({} networks, Student's "
-                              "t). alone: verdicts by the missions of each network alone, {}.",
-                              study.networks, kVerdictLetters),
-                  "", kTerminalWidth);
+    notes +=
+        Wrap(fmt::format("Intervals and p values include the luck of training ({} networks, Student's "
+                         "t). alone: verdicts by the missions of each network alone, {}. (luck): it differs "
+                         "from the mean of our "
+                         "networks, but lies where a single network of ours may (95 % prediction interval); "
+                         "the paper says nothing of having trained several.",
+                         study.networks, kVerdictLetters),
+             "", kTerminalWidth);
     if (study.networks_disagree)
       notes += Wrap("Arms took turns among their networks differently: they are paired by scenario only.", "",
                     kTerminalWidth);
@@ -189,9 +200,11 @@ Json VerdictJson(const ClaimStudy& study) {
                    {"lo", JsonNumber(judged.all.lo)},
                    {"hi", JsonNumber(judged.all.hi)},
                    {"p", JsonNumber(judged.all.p)},
+                   {"p_against", JsonNumber(judged.all.p_against)},
                    {"p_holm", JsonNumber(judged.all.p_holm)},
                    {"p_against_holm", JsonNumber(judged.all.p_against_holm)},
                    {"verdict", NameOf(judged.all.verdict)},
+                   {"within_luck", judged.within_luck},
                    {"why", judged.all.why},
                    {"by_network", ByNetworkJson(judged)}});
   }
@@ -200,7 +213,8 @@ Json VerdictJson(const ClaimStudy& study) {
 
 std::string VerdictCsv(const ClaimStudy& study) {
   std::string csv =
-      "id,where,strategy,metric,kind,claim,paper,ours,lo,hi,p,p_holm,p_against_holm,verdict,why";
+      "id,where,strategy,metric,kind,claim,paper,ours,lo,hi,p,p_against,p_holm,p_against_holm,verdict,"
+      "within_luck,why";
   for (const Verdict verdict : kVerdicts) {
     std::string column(NameOf(verdict));
     std::replace(column.begin(), column.end(), ' ', '_');
@@ -211,12 +225,13 @@ std::string VerdictCsv(const ClaimStudy& study) {
   for (const JudgedClaim& judged : study.claims) {
     const Claim& claim = judged.claim;
     const std::string& what = claim.comparison.empty() ? claim.strategy : claim.comparison;
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", claim.id, CsvField(claim.where),
-                       CsvField(claim.strategy), claim.metric, claim.kind, CsvField(what),
-                       CsvNumber(judged.all.paper), CsvNumber(judged.all.ours), CsvNumber(judged.all.lo),
-                       CsvNumber(judged.all.hi), CsvNumber(judged.all.p), CsvNumber(judged.all.p_holm),
-                       CsvNumber(judged.all.p_against_holm), NameOf(judged.all.verdict),
-                       CsvField(judged.all.why));
+    csv +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", claim.id, CsvField(claim.where),
+                    CsvField(claim.strategy), claim.metric, claim.kind, CsvField(what),
+                    CsvNumber(judged.all.paper), CsvNumber(judged.all.ours), CsvNumber(judged.all.lo),
+                    CsvNumber(judged.all.hi), CsvNumber(judged.all.p), CsvNumber(judged.all.p_against),
+                    CsvNumber(judged.all.p_holm), CsvNumber(judged.all.p_against_holm),
+                    NameOf(judged.all.verdict), judged.within_luck ? "yes" : "no", CsvField(judged.all.why));
     std::map<Verdict, int> counts = CountByNetwork(judged);
     for (const Verdict verdict : kVerdicts) csv += fmt::format(",{}", counts[verdict]);
     csv += '\n';

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "studies/claims/evidence.h"
 #include "studies/claims/setup.h"
 #include "studies/statistics/holm.h"
+#include "studies/statistics/intervals.h"
 
 namespace ed3r {
 namespace {
@@ -19,7 +21,7 @@ constexpr double kLevel = 0.05;
 // percentages half of what it or its complement is (a success rate is a failure rate), but 5 points at least.
 double CoarseReach(const Claim& claim, double paper) {
   constexpr double kShare = 0.5, kPoints = 5;
-  if (claim.unit != "%") return kShare * std::abs(paper);
+  if (!claim.unit.starts_with('%')) return kShare * std::abs(paper);
   return std::max(kPoints, kShare * std::min(paper, 100 - paper));
 }
 
@@ -96,11 +98,41 @@ void DecideNumber(const Claim& claim, Judgement& judged) {
     return;
   }
   const double reach = std::max(judged.hi - judged.ours, judged.ours - judged.lo);
-  const bool coarse = reach > CoarseReach(claim, judged.paper);
+  const bool coarse = claim.source != "construction" && reach > CoarseReach(claim, judged.paper);
   judged.verdict = coarse ? Verdict::kNotDecidable : Verdict::kReproduced;
   if (coarse)
     judged.why =
         fmt::format("inside, but the interval reaches {:.0f} % of the value", 100 * reach / judged.paper);
+}
+
+// The longest mission of many is longer than that of few: it compares with the paper's only at the paper's number.
+bool GrowsWithTheRun(const ParsedClaim& parsed, std::span<const ArmData> arms) {
+  constexpr std::size_t kPaperMissions = 850;
+  return std::any_of(parsed.cells.begin(), parsed.cells.end(), [&](const Cell& cell) {
+    if (MetricDefinitions()[cell.metric].estimate != Estimate::kMaximum) return false;
+    const auto arm = std::find_if(arms.begin(), arms.end(), [&](const ArmData& data) {
+      return data.name == cell.arm && !data.missions.empty();
+    });
+    return arm != arms.end() && arm->missions.size() != kPaperMissions;
+  });
+}
+
+bool AsksNetworks(const ParsedClaim& parsed, const ResampledArms& arms) {
+  return arms.Missing(parsed.cells).empty() &&
+         std::any_of(parsed.cells.begin(), parsed.cells.end(),
+                     [&](const Cell& cell) { return arms.At(cell).network_count > 1; });
+}
+
+bool IsWithinLuck(const JudgedClaim& judged) {
+  const auto paper = PaperValueOf(judged.claim);
+  if (judged.all.verdict != Verdict::kDiffers || judged.claim.kind == "order" || !paper) return false;
+  std::vector<double> alone;
+  for (const Judgement& network : judged.by_network) alone.push_back(network.ours);
+  const Interval of_mean = MeanInterval(alone);
+  if (!of_mean.Exists()) return false;
+  const double half_width =
+      0.5 * (of_mean.hi - of_mean.lo) * std::sqrt(1.0 + static_cast<double>(alone.size()));
+  return std::abs(judged.all.ours - paper->value) <= half_width + paper->half_unit;
 }
 
 // One round: every claim by the missions of one set of arms.
@@ -109,6 +141,8 @@ class Round {
   Round(const std::vector<ParsedClaim>& parsed, const std::vector<Claim>& claims,
         std::span<const ArmData> arms, const ResampledArms& resampled)
       : parsed_(parsed), claims_(claims), data_(arms), arms_(resampled) {}
+
+  int Family() const { return family_; }
 
   std::vector<Judgement> Judge() {
     Weigh();
@@ -130,7 +164,9 @@ class Round {
       } else if (claim.kind == "setup") {
         judged_[i] = JudgeSetup(claim, data_);
       } else if (!missing.empty()) {
-        judged_[i].why = fmt::format("not in this run: {}", fmt::join(missing, ", "));
+        judged_[i].why = fmt::format("{}{}", kNotInThisRun, fmt::join(missing, ", "));
+      } else if (GrowsWithTheRun(parsed_[i], data_)) {
+        judged_[i].why = "the longest of another number of missions than in the paper";
       } else {
         const Expression& expression = *parsed_[i].expression;
         evidence_[i] = expression.is_quantity ? WeighNumber(claim, expression.quantity, arms_)
@@ -157,6 +193,7 @@ class Round {
       judged_[i].p_holm = holm_for[member[i]];
       judged_[i].p_against_holm = holm_against[member[i]];
     }
+    family_ = static_cast<int>(p_for.size());
   }
 
   void Decide(std::size_t i) {
@@ -165,7 +202,7 @@ class Round {
     Judgement& judged = judged_[i];
     judged.ours = evidence.ours, judged.lo = evidence.lo, judged.hi = evidence.hi;
     judged.paper = evidence.paper;
-    judged.p = evidence.p_for;
+    judged.p = evidence.p_for, judged.p_against = evidence.p_against;
     if (claim.kind == "order")
       DecideOrder(evidence, claim.tolerance > 0, judged);
     else if (claim.kind == "ratio")
@@ -181,6 +218,7 @@ class Round {
   const std::vector<Claim>& claims_;
   std::span<const ArmData> data_;
   const ResampledArms& arms_;
+  int family_ = 0;
   std::vector<std::optional<Evidence>> evidence_;
   std::vector<Judgement> judged_;
 };
@@ -238,7 +276,9 @@ ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData
   study.networks = all.networks();
   study.networks_disagree = all.networks_disagree();
   study.scenarios = static_cast<std::int64_t>(all.scenarios());
-  const std::vector<Judgement> judged = Round(parsed, claims, arms, all).Judge();
+  Round round(parsed, claims, arms, all);
+  const std::vector<Judgement> judged = round.Judge();
+  study.family = round.Family();
   for (std::size_t i = 0; i < claims.size(); ++i) study.claims.push_back({claims[i], judged[i], {}});
   if (study.networks < 2) return study;
   for (int network = 0; network < study.networks; ++network) {
@@ -247,6 +287,8 @@ ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData
     for (std::size_t i = 0; i < claims.size(); ++i)
       if (claims[i].kind != "setup") study.claims[i].by_network.push_back(alone[i]);
   }
+  for (std::size_t i = 0; i < claims.size(); ++i)
+    study.claims[i].within_luck = AsksNetworks(parsed[i], all) && IsWithinLuck(study.claims[i]);
   return study;
 }
 
@@ -264,6 +306,20 @@ int CountReproducedByConstruction(const ClaimStudy& study) {
                            (claim.kind == "value" && !PaperValueOf(claim));
         return built && judged.all.verdict == Verdict::kReproduced;
       }));
+}
+
+int CountReproducedByCalibration(const ClaimStudy& study) {
+  static const std::set<std::string> targets = {"total_energy_kj", "msr_pct", "wer_pct", "mscs_pct"};
+  return static_cast<int>(
+      std::count_if(study.claims.begin(), study.claims.end(), [](const JudgedClaim& judged) {
+        return judged.claim.strategy == "rbs" && judged.claim.kind == "value" &&
+               targets.count(judged.claim.metric) > 0 && judged.all.verdict == Verdict::kReproduced;
+      }));
+}
+
+int CountWithinLuck(const ClaimStudy& study) {
+  return static_cast<int>(std::count_if(study.claims.begin(), study.claims.end(),
+                                        [](const JudgedClaim& judged) { return judged.within_luck; }));
 }
 
 std::map<Verdict, int> CountByNetwork(const JudgedClaim& claim) {

@@ -64,20 +64,28 @@ struct Judgement {
   double hi = std::numeric_limits<double>::quiet_NaN();
   double paper = std::numeric_limits<double>::quiet_NaN();
   double p = std::numeric_limits<double>::quiet_NaN();  // of what is claimed; none for numbers of one arm
+  double p_against = std::numeric_limits<double>::quiet_NaN();  // of the opposite
   double p_holm = std::numeric_limits<double>::quiet_NaN();
-  double p_against_holm = std::numeric_limits<double>::quiet_NaN();  // of the opposite
-  std::string why;                                                   // one sentence without a full stop
+  double p_against_holm = std::numeric_limits<double>::quiet_NaN();
+  std::string why;  // one sentence without a full stop
 };
+
+// How `why` starts where arms are missing.
+inline constexpr std::string_view kNotInThisRun = "not in this run: ";
 
 struct JudgedClaim {
   Claim claim;
   Judgement all;  // with every mission
   std::vector<Judgement>
       by_network;  // with the missions of one trained network alone; empty with fewer than two
+  // A number that differs from the mean over our networks, though no more than one more network of ours might: the
+  // paper's value lies in the 95 % prediction interval of a single network (it says nothing of having trained several).
+  bool within_luck = false;
 };
 
 struct ClaimStudy {
   std::vector<JudgedClaim> claims;  // in the order of the paper's list
+  int family = 0;                   // different directional claims that p values are corrected for
   int networks = 0;                 // 1: intervals and p-values know nothing of the luck of training
   bool networks_disagree = false;   // arms took turns among their networks differently
   std::int64_t scenarios = 0;
@@ -91,6 +99,10 @@ ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData
 std::map<Verdict, int> CountVerdicts(const ClaimStudy& study);
 // Claims that are reproduced without a measurement: how the study is set up, how an arm is built, what the paper leaves out.
 int CountReproducedByConstruction(const ClaimStudy& study);
+// Reproduced numbers that the perception was calibrated on (sweeps/calibration): no prediction.
+int CountReproducedByCalibration(const ClaimStudy& study);
+// Numbers that differ within the luck of a single network.
+int CountWithinLuck(const ClaimStudy& study);
 // Of one claim over the single networks.
 std::map<Verdict, int> CountByNetwork(const JudgedClaim& claim);
 

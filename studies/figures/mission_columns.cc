@@ -50,19 +50,9 @@ constexpr Column kColumns[] = {
      [](const MissionRecord& m) { return static_cast<double>(m.quantized_local); }},
 };
 
-// 1 - MAE / max MAE over the arm's missions (R29), in percent.
 Json LookForward(const ArmData& arm) {
-  std::vector<double> errors;
-  double worst = 0;
-  for (const MissionRecord& m : arm.missions) {
-    errors.push_back(m.predicted_timesteps > 0
-                         ? m.absolute_reward_error_sum / static_cast<double>(m.predicted_timesteps)
-                         : kNone);
-    if (!std::isnan(errors.back())) worst = std::max(worst, errors.back());
-  }
   Json column = Json::array();
-  for (const double error : errors)
-    column.push_back(Rounded(worst > 0 ? 100 * (1 - error / worst) : error + 100));
+  for (const double accuracy : LookForwardAccuracies(arm.missions)) column.push_back(Rounded(100 * accuracy));
   return column;
 }
 
@@ -92,7 +82,7 @@ Json ColumnUnits() {
   Json units = Json::object();
   for (const Column& column : kColumns) units[column.name] = column.meaning;
   units["lf_accuracy_pct"] =
-      "look-forward accuracy, relative to the arm's worst mission, %; null without predictions";
+      "look-forward accuracy, relative to the worst mission of the same network, %; null without predictions";
   return units;
 }
 

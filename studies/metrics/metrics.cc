@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -46,15 +47,6 @@ Contributions Collect(const MetricDefinition& metric, const std::vector<MissionR
 
 double Sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-// 1 - MAE / max MAE of each mission (R29); all 1 where no prediction was off.
-std::vector<double> LookForward(const Contributions& all) {
-  std::vector<double> errors(all.part.size());
-  for (std::size_t i = 0; i < errors.size(); ++i) errors[i] = all.part[i] / all.whole[i];
-  const double worst = *std::max_element(errors.begin(), errors.end());
-  for (double& error : errors) error = worst > 0 ? 1 - error / worst : 1;
-  return errors;
-}
-
 Interval IntervalOf(Estimate estimate, const Contributions& all) {
   switch (estimate) {
     case Estimate::kMean:
@@ -94,7 +86,8 @@ MetricValue Evaluate(const MetricDefinition& metric, const std::vector<MissionRe
   result.n = static_cast<std::int64_t>(all.part.size());
   if (result.n == 0) return result;
   if (metric.estimate == Estimate::kLookForward) {
-    all.part = LookForward(all);
+    all.part = LookForwardAccuracies(missions);
+    std::erase_if(all.part, [](double accuracy) { return std::isnan(accuracy); });
     all.whole.assign(all.part.size(), 1.0);
   }
   if (metric.estimate == Estimate::kPercentile85 || metric.estimate == Estimate::kMaximum)
@@ -136,6 +129,24 @@ void WidenByNetworks(const MetricDefinition& metric, const std::vector<std::vect
 }
 
 }  // namespace
+
+std::vector<double> LookForwardAccuracies(std::span<const MissionRecord> missions) {
+  std::map<std::int64_t, double> worst;
+  std::vector<double> accuracies;
+  for (const MissionRecord& m : missions) {
+    const bool any = m.predicted_timesteps > 0;
+    const double error = any ? m.absolute_reward_error_sum / static_cast<double>(m.predicted_timesteps)
+                             : std::numeric_limits<double>::quiet_NaN();
+    accuracies.push_back(error);
+    if (any) worst[m.network] = std::max(worst[m.network], error);
+  }
+  for (std::size_t i = 0; i < accuracies.size(); ++i)
+    if (!std::isnan(accuracies[i])) {
+      const double of_network = worst[missions[i].network];
+      accuracies[i] = of_network > 0 ? 1 - accuracies[i] / of_network : 1;
+    }
+  return accuracies;
+}
 
 ArmMetrics ComputeMetrics(const ArmData& arm) {
   for (const MissionRecord& mission : arm.missions) CheckRecord(arm, mission);

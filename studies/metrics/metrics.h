@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,5 +39,9 @@ struct ArmMetrics {
 // Pure. Checks every record first (ED3R_CHECK): counts within the timesteps, a known outcome, finite energies
 // whose parts sum up to the total.
 ArmMetrics ComputeMetrics(const ArmData& arm);
+
+// LF accuracy of each mission (R29): 1 - MAE / the largest MAE among the missions of its network; 1 where no prediction
+// was off, NaN where there was none.
+std::vector<double> LookForwardAccuracies(std::span<const MissionRecord> missions);
 
 }  // namespace ed3r

@@ -37,10 +37,10 @@ std::string Row(const JudgedClaim& judged) {
   return fmt::format(
       "<tr><td title=\"{}\">{}</td><td "
       "class=\"text\">{}<small>{}</small></td><td>{}</td><td>{}<i>{}</i></td><td>{}</td>"
-      "<td>{}</td><td class=\"text\"><span class=\"{}\">{}</span></td></tr>\n",
+      "<td>{}</td><td class=\"text\"><span class=\"{}\">{}{}</span></td></tr>\n",
       HtmlText(judged.claim.exact_words), judged.claim.id, HtmlText(ClaimInWords(judged.claim, kWords)),
       HtmlText(all.why), Number(all.paper), Number(all.ours), interval, PValue(all.p_holm), Agreement(judged),
-      ClassOf(all.verdict), NameOf(all.verdict));
+      ClassOf(all.verdict), NameOf(all.verdict), judged.within_luck ? " (luck)" : "");
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ std::string VerdictSection(const ClaimStudy& study) {
       "</p>\n<p class=\"key\">Orders and comparisons are paired by scenario ({} of them) and resampled over "
       "{}; p is corrected "
       "by Holm over all of them. The column before the verdict: how many of the networks alone would have "
-      "given it.</p>\n",
+      "given it. (luck): differs from the mean of our networks, but lies where a single one may.</p>\n",
       study.scenarios,
       study.networks > 1 ? fmt::format("{} trained networks and missions", study.networks) : "missions");
   html +=

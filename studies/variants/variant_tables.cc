@@ -14,7 +14,7 @@ namespace ed3r {
 namespace {
 
 constexpr int kArmWidth = 14, kVariantWidth = 26, kCellWidth = 26;
-constexpr int kIdWidth = 5, kClaimWidth = 55;
+constexpr int kIdWidth = 5, kFewestWords = 24, kMostWords = 60;
 
 std::string CellText(const VariantDifference& d) {
   if (std::isnan(d.difference)) return "–";
@@ -47,7 +47,12 @@ std::string DifferenceTable(const VariantStudy& study) {
                   [](const VariantDifference& d) { return d.OneNetwork(); }))
     text += Wrap("one trained network on a side: the luck of training is not in the interval.", "? ",
                  kTerminalWidth);
-  return text;
+  const auto intervals = std::count_if(study.differences.begin(), study.differences.end(),
+                                       [](const auto& d) { return !std::isnan(d.lo) && !d.OneNetwork(); });
+  return text +
+         Wrap(fmt::format("{} intervals, each 95 % by itself: up to {:.0f} stars are expected by chance.",
+                          intervals, std::ceil(0.05 * static_cast<double>(intervals))),
+              "", kTerminalWidth);
 }
 
 std::string ChangeCounts(const VariantStudy& study) {
@@ -69,35 +74,46 @@ std::string ChangeCounts(const VariantStudy& study) {
   return text;
 }
 
-// Orders and comparisons that some variant judges otherwise, a row each; one letter per variant.
+// Which side the evidence is on, of one claim alone: a few networks cannot pass Holm's correction over all claims.
+char SideOf(const Judgement& judged) {
+  constexpr double kLevel = 0.05;
+  if (judged.verdict == Verdict::kNotMeasured) return ' ';
+  return judged.p < kLevel ? '+' : judged.p_against < kLevel ? '-' : '.';
+}
+
+// Orders and comparisons on which the evidence changes sides, a row each; one sign per variant.
 std::string ChangeMatrix(const VariantStudy& study) {
+  const int width = std::clamp(kTerminalWidth - kIdWidth - 3 * static_cast<int>(study.variants.size()),
+                               kFewestWords, kMostWords);
   std::string rows;
   int alike = 0;
   for (std::size_t i = 0; i < study.verdicts.front().claims.size(); ++i) {
     const Claim& claim = study.verdicts.front().claims[i].claim;
     if (claim.kind != "order" && claim.kind != "ratio") continue;
-    const auto verdict = [&](std::size_t v) { return study.verdicts[v].claims[i].all.verdict; };
-    std::string letters;
+    const auto side = [&](std::size_t v) { return SideOf(study.verdicts[v].claims[i].all); };
+    std::string signs;
     bool changes = false;
     for (std::size_t v = 0; v < study.variants.size(); ++v) {
-      letters += fmt::format("{:>3}", LetterOf(verdict(v)));
-      changes |= verdict(v) != verdict(0);
+      signs += fmt::format("{:>3}", side(v));
+      changes |= side(v) != side(0);
     }
     if (!changes) {
       ++alike;
       continue;
     }
-    rows += Pad(claim.id, kIdWidth, Align::kLeft) +
-            Pad(ClaimInWords(claim, kClaimWidth - 1), kClaimWidth, Align::kLeft) + letters + "\n";
+    rows += Pad(claim.id, kIdWidth, Align::kLeft) + Pad(ClaimInWords(claim, width - 1), width, Align::kLeft) +
+            signs + "\n";
   }
   if (rows.empty()) return "";
-  std::string heading =
-      Pad("", kIdWidth, Align::kLeft) + Pad("orders and comparisons that change", kClaimWidth, Align::kLeft);
+  std::string heading = Pad("", kIdWidth, Align::kLeft) + Pad("orders and comparisons", width, Align::kLeft);
   for (std::size_t v = 0; v < study.variants.size(); ++v) heading += fmt::format("{:>3}", v + 1);
   return fmt::format("\n{}\n{}\n{}", heading, Rule(DisplayWidth(heading)), rows) +
-         Wrap(fmt::format("{}. {} are judged alike in all; numbers: the table of verdicts.", kVerdictLetters,
-                          alike),
-              "", kTerminalWidth);
+         Wrap(
+             fmt::format(
+                 "+ as claimed, - the opposite (p < 0.05, paired, of this claim alone, not corrected for the "
+                 "number of claims), . neither. {} more are alike in all.",
+                 alike),
+             "", kTerminalWidth);
 }
 
 std::string ChangeTable(const VariantStudy& study) {

@@ -46,6 +46,13 @@ TEST(SetupTest, OtherStudies) {
   EXPECT_EQ(JudgeSetup(Find("C007"), arms).verdict, Verdict::kDiffers);
 }
 
+TEST(SetupTest, AnUnfinishedRunIsNotOneOfAnotherLength) {
+  std::vector<ArmData> arms = {MakeArm({"ed3r-75"}, {.missions = 849})};
+  EXPECT_EQ(JudgeSetup(Find("C004"), arms).why, "another number of missions than in the paper, on purpose");
+  arms[0].failed = 1;
+  EXPECT_EQ(JudgeSetup(Find("C004"), arms).why, "missions are missing or failed");
+}
+
 TEST(SetupTest, WithoutTheArms) {
   EXPECT_EQ(JudgeSetup(Find("C005"), {}).verdict, Verdict::kNotMeasured);
   EXPECT_EQ(JudgeSetup(Find("C004"), {}).why, "not in this run: the online arms");

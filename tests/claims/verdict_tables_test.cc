@@ -59,15 +59,24 @@ TEST(VerdictTextTest, AnOppositeThatIsSignificantShowsItsOwnP) {
 TEST(VerdictTextTest, CountsWhatHoldsByConstructionApart) {
   const std::string summary = LineOf(VerdictText(Study()), "177 claims: ");
   EXPECT_GT(CountReproducedByConstruction(Study()), 0);
-  EXPECT_NE(summary.find(fmt::format("{} hold by construction", CountReproducedByConstruction(Study()))),
+  EXPECT_NE(summary.find(fmt::format("{} by construction", CountReproducedByConstruction(Study()))),
             std::string::npos)
       << summary;
+}
+
+TEST(VerdictTextTest, DifferencesWithinTheLuckOfOneNetworkAreMarked) {
+  const ClaimStudy study = JudgeClaims(PaperClaims(), std::vector<ArmData>{MakeArm({"ed3r-75", 35, 0, 0.3})});
+  const std::string text = VerdictText(study);  // networks of 24.5 to 45.5 kJ; the paper's 21.44
+  EXPECT_NE(LineOf(text, "C104").find("differs (luck)"), std::string::npos) << text;
+  EXPECT_GT(CountWithinLuck(study), 0);
+  EXPECT_NE(text.find(fmt::format("({} of them within", CountWithinLuck(study))), std::string::npos) << text;
 }
 
 TEST(VerdictTextTest, WhatIsNotThereTakesOneEntryPerReason) {
   const std::string text = VerdictText(Study());
   EXPECT_EQ(LineOf(text, "C027"), "");
-  const std::string line = "Not measured, arms that are not in this run: ";
+  const std::string line =
+      "Not measured, arms that are not in this run, or P85 groups too small for a verdict: ";
   EXPECT_NE(LineOf(text, line), "") << text;
   EXPECT_EQ(text.find("not in this run", text.find(line) + line.size()), std::string::npos);
 }
@@ -93,7 +102,7 @@ TEST(VerdictDataTest, JsonAndCsvAgree) {
   ASSERT_EQ(rows.size(), json.size() + 1);
   for (std::size_t i = 0; i < json.size(); ++i) {
     EXPECT_EQ(json[i].at("id"), rows[i + 1][0]);
-    EXPECT_EQ(json[i].at("verdict"), rows[i + 1][13]);
+    EXPECT_EQ(json[i].at("verdict"), rows[i + 1][14]);
     EXPECT_EQ(json[i].at("ours").is_null(), rows[i + 1][7].empty());
   }
   const auto& order = json[139];

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "engine/core/check.h"
 #include "tests/claims/synthetic_run.h"
@@ -79,9 +80,12 @@ TEST(VerdictsTest, RoundingAndToleranceCount) {
   EXPECT_EQ(VerdictOf(claim, arms), Verdict::kDiffers);
 }
 
-// A maximum has no interval: only its tolerance can hold it.
+// A maximum has no interval: only its tolerance can hold it. It grows with the number of missions.
 TEST(VerdictsTest, NumbersWithoutAnInterval) {
-  const std::vector<ArmData> arms = ThreeArms();
+  SyntheticDesign design;
+  design.missions = 850;  // as many as in the paper
+  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20}, design)};
+  EXPECT_EQ(VerdictOf(Value("ed3r-75", "duration_max_min", "4", "min"), ThreeArms()), Verdict::kNotMeasured);
   Claim claim = Value("ed3r-75", "duration_max_min", "4", "min");  // 20 kJ x 1.5 at 130 W, and noise
   EXPECT_EQ(VerdictOf(claim, arms), Verdict::kDiffers);
   claim.tolerance = 1;
@@ -92,6 +96,26 @@ TEST(VerdictsTest, AnIntervalThatHoldsAlmostAnythingDecidesNothing) {
   const std::vector<ArmData> lucky = {MakeArm({"ed3r-75", 20, 0, 0.9})};
   EXPECT_EQ(VerdictOf(Energy("ed3r-75", "20"), lucky), Verdict::kNotDecidable);
   EXPECT_EQ(VerdictOf(Energy("ed3r-75", "80"), lucky), Verdict::kDiffers);
+}
+
+TEST(VerdictsTest, SharesOfMissionsArePercentagesToo) {
+  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 100, 0, 0.3})};  // 10 minutes take 78 kJ
+  const JudgedClaim judged = JudgeOne(Value("ed3r-75", "within_10min_pct", "30", "% of missions"), arms);
+  ASSERT_LT(judged.all.lo, 15);  // reaches further than half of 30
+  EXPECT_EQ(judged.all.verdict, Verdict::kNotDecidable) << judged.all.why;
+}
+
+TEST(VerdictsTest, OneNetworkOfThePaperMayDifferFromOurMean) {
+  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20, 0, 0.2}), MakeArm({"rbs", 20, 0, 0, false})};
+  // Networks of 16, 18, 20, 22, 24 kJ: t(4) x 3.16 / sqrt(5) = 3.9 around the mean, x sqrt(6) = 9.6 for one more.
+  for (const auto& [paper, verdict, luck] :
+       {std::tuple("23", Verdict::kReproduced, false), std::tuple("28", Verdict::kDiffers, true),
+        std::tuple("31", Verdict::kDiffers, false)}) {
+    const JudgedClaim judged = JudgeOne(Energy("ed3r-75", paper), arms);
+    EXPECT_EQ(judged.all.verdict, verdict) << paper;
+    EXPECT_EQ(judged.within_luck, luck) << paper;
+  }
+  EXPECT_FALSE(JudgeOne(Energy("rbs", "22"), arms).within_luck) << "no network, no luck";
 }
 
 TEST(VerdictsTest, ValuesThatDoNotExist) {
@@ -115,6 +139,14 @@ TEST(VerdictsTest, AnOrderIsAsCertainAsItsLeastCertainPart) {
   EXPECT_EQ(judged.p, JudgeOne(Order("ed3r-75 < ecd2r"), arms).all.p);
   EXPECT_NEAR(judged.ours, 0.6, 0.3);
   EXPECT_NE(judged.why.find("ed3r-75 < ecd2r"), std::string::npos);
+}
+
+TEST(VerdictsTest, OfPartsThatLeanTheOtherWayTheSurerIsShown) {
+  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20}), MakeArm({"ecd2r", 19.8}),
+                                     MakeArm({"rbs", 10})};
+  const Judgement judged = JudgeOne(Order("ed3r-75 < ecd2r, rbs"), arms).all;
+  EXPECT_NEAR(judged.ours, -10, 1);
+  EXPECT_NE(judged.why.find("ed3r-75 < rbs"), std::string::npos) << judged.why;
 }
 
 TEST(VerdictsTest, AnOrderWithItsPrintedSizesIsReproduced) {

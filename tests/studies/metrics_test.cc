@@ -128,6 +128,18 @@ TEST(MetricsTest, StrategiesWithoutNetworksHaveNoLookForwardAccuracy) {
   EXPECT_EQ(ComputeMetrics(arm)["lf_accuracy_pct"].value, 100);
 }
 
+TEST(MetricsTest, LookForwardAccuracyIsRelativeToTheNetworksOwnWorst) {
+  ArmData arm = FiveMissions();
+  arm.missions.resize(4);
+  const double errors[] = {0.1, 0.2, 0.4, 0.8};
+  for (std::size_t i = 0; i < 4; ++i) {
+    MissionRecord& mission = arm.missions[i];
+    Predict(mission, mission.timesteps, errors[i] * static_cast<double>(mission.timesteps));
+    mission.network = i < 2 ? 0 : 1;
+  }
+  EXPECT_DOUBLE_EQ(ComputeMetrics(arm)["lf_accuracy_pct"].value, 25);  // 50, 0, 50, 0
+}
+
 TEST(MetricsTest, IntervalsStayWithinWhatIsPossible) {
   const ArmData five = FiveMissions();
   for (std::size_t a = 0; a < 5; ++a)

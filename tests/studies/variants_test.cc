@@ -69,7 +69,7 @@ TEST(VariantsTest, OrdersThatChangeAreARowEach) {
       arms.push_back(AsVariant({arm}, variant).front());
   const VariantStudy study = CompareVariants(arms);
   const std::string text = VariantText(study);
-  EXPECT_NE(text.find("C140 total energy: ed3r-75 < ecd2r, rbs                       h  d\n"),
+  EXPECT_NE(text.find("C140 total energy: ed3r-75 < ecd2r, rbs                            +  -\n"),
             std::string::npos)
       << text;
   EXPECT_EQ(text.find("C075"), std::string::npos) << "an order without its arms is alike in both";
