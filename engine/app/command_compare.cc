@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "engine/app/commands.h"
 #include "engine/core/check.h"
+#include "engine/store/reader.h"
 #include "studies/metrics/number_text.h"
 #include "studies/report/files.h"
 #include "studies/report/load.h"
@@ -23,6 +25,10 @@ struct Options {
   std::string out;
   bool json = false;
 };
+
+constexpr const char* kOtherSeeds =
+    "\nThe runs have different seeds: a scenario of one is another draw at the same places, with other "
+    "networks.\n";
 
 // A run is called by its folder.
 std::string LabelOf(const std::string& dir) {
@@ -58,6 +64,7 @@ int Compare(const Options& options) {
     throw UserError(fmt::format("compare: {} is one run; at least two are needed", options.dirs.front()));
   std::vector<ArmData> arms;
   std::vector<std::string> labels;
+  std::set<std::uint64_t> seeds;
   for (const std::string& dir : options.dirs) {
     const std::string label = LabelOf(dir);
     if (std::find(labels.begin(), labels.end(), label) != labels.end())
@@ -65,6 +72,7 @@ int Compare(const Options& options) {
           fmt::format("{}: two of the runs are in folders called '{}'; their names must differ", dir, label));
     labels.push_back(label);
     const RunResults run = LoadRun(dir);
+    seeds.insert(ResultReader(dir).Layout().seed);
     if (!VariantsOf(run.arms).empty())
       throw UserError(fmt::format("{}: has variants of its own; 'ed3r report {}' compares them", dir, dir));
     for (ArmData& arm : AsVariant(run.arms, label)) arms.push_back(std::move(arm));
@@ -73,14 +81,15 @@ int Compare(const Options& options) {
   if (study.differences.empty())
     throw UserError(
         fmt::format("{}: no arm of the other runs has the name of one of its arms", options.dirs.front()));
+  const std::string text = VariantText(study) + (seeds.size() > 1 ? kOtherSeeds : "");
   if (!options.out.empty()) {
     const fs::path out(options.out);
     MakeFolder(out);
-    WriteWhole(out / "compare.txt", VariantText(study));
+    WriteWhole(out / "compare.txt", text);
     WriteWhole(out / "differences.csv", DifferenceCsv(study));
     WriteWhole(out / "verdicts.csv", VariantVerdictCsv(study));
   }
-  fmt::print("{}", options.json ? JsonOf(study).dump(2) + "\n" : VariantText(study));
+  fmt::print("{}", options.json ? JsonOf(study).dump(2) + "\n" : text);
   return kDone;
 }
 

@@ -53,6 +53,15 @@ TEST_F(CompareTest, ARunEqualsItself) {
   const CommandResult result = Ed3r(fmt::format("compare {} {}/", Dir("usual"), Dir("again")));
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("again: 0 of 177 claims"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("different seeds"), std::string::npos) << result.out;
+}
+
+TEST_F(CompareTest, OtherSeedsAreSaid) {
+  const CommandResult flown = Ed3r(fmt::format(
+      "run {}/sweeps/rbs.yaml --missions 28 --seed 5 --quiet --out {}", ED3R_SOURCE_DIR, Dir("reseeded")));
+  ASSERT_EQ(flown.status, 0) << flown.err;
+  const CommandResult result = Ed3r(fmt::format("compare {} {}", Dir("usual"), Dir("reseeded")));
+  EXPECT_NE(result.out.find("different seeds"), std::string::npos) << result.out;
 }
 
 TEST_F(CompareTest, WhatCannotBeComparedIsSaid) {
