@@ -14,6 +14,7 @@ import plot_curves
 import plot_map
 import plot_missions
 import plot_summary
+import plot_variants
 
 DRAWINGS = {
     "overview": plot_missions.draw_overview,
@@ -23,6 +24,7 @@ DRAWINGS = {
     "sites": plot_summary.draw_sites,
     "convergence": plot_curves.draw_convergence,
     "map": plot_map.draw_map,
+    "variants": plot_variants.draw_variants,
 }
 
 

@@ -150,9 +150,9 @@ std::string Notes(const ClaimStudy& study) {
                     kTerminalWidth);
   } else {
     notes += Wrap(
-        "One trained network flew each arm: intervals and p values are over missions alone and say nothing "
-        "of the luck "
-        "of training, which may be larger (training.seeds).",
+        "Each arm that asks a network flew with one: its intervals and p values are over missions alone and "
+        "say "
+        "nothing of the luck of training, which may be larger (training.seeds).",
         "", kTerminalWidth);
   }
   return notes;

@@ -119,6 +119,22 @@ Json WorldJson(const Scene& scene) {
   return json;
 }
 
+Json VariantsJson(const VariantStudy& study) {
+  Json json = {{"base", study.variants.front()},
+               {"names", std::vector<std::string>(study.variants.begin() + 1, study.variants.end())},
+               {"differences", Json::array()}};
+  for (const VariantDifference& d : study.differences)
+    json["differences"].push_back({{"arm", d.arm},
+                                   {"label", ArmLabel(d.arm)},
+                                   {"variant", d.variant},
+                                   {"metric", d.metric},
+                                   {"difference", Rounded(d.difference)},
+                                   {"lo", Rounded(d.lo)},
+                                   {"hi", Rounded(d.hi)},
+                                   {"certain", d.Certain()}});
+  return json;
+}
+
 }  // namespace
 
 Json MakeFigureData(const FigureInputs& inputs) {
@@ -131,6 +147,9 @@ Json MakeFigureData(const FigureInputs& inputs) {
   data["figures"] = Json::array();
   for (const FigureSpec& figure : ListFigures(inputs.arms, inputs.plans, inputs.missions.size()))
     data["figures"].push_back(FigureJson(figure, keys));
+  const bool varied = inputs.variants != nullptr && inputs.variants->variants.size() > 1;
+  if (varied) data["figures"].push_back(FigureJson(VariantFigure(inputs.variants->variants.front()), keys));
+  data["variants"] = varied ? VariantsJson(*inputs.variants) : Json(nullptr);
   data["missions_shown"] = Json::array();
   for (const ShownMission& mission : inputs.missions) data["missions_shown"].push_back(MissionJson(mission));
   data["world"] = inputs.scene ? WorldJson(*inputs.scene) : Json(nullptr);

@@ -17,6 +17,9 @@
 //     convergence     METRIC: {missions: [n...], half_width: [...], half_width_missions: [...]}: of the 95 % interval
 //                     that the first n missions give, with and without the luck of training (studies/claims/convergence.h)
 //   figures           list: {id, kind, title, caption, arms: [key...], warmups: [key...]}: see figure_list.h
+//   variants          of a sweep that has them, else null; the arms above are then those of the first variant:
+//                     {base, names: [the others...], differences: [{arm, variant, metric, difference, lo, hi, certain}]}
+//                     as in variants.csv (studies/variants/variants.h); null is "none"
 //   missions_shown    list: {arm, mission, outcome, site, base_station, duration_min, energy_kj,
 //                     x_m, y_m, z_m, scs_pct}: positions after each timestep, the start first (its SCS is null)
 //   world             of missions_shown, null where it is not at hand (world_note says why):
@@ -36,6 +39,7 @@
 #include "studies/figures/figure_list.h"
 #include "studies/figures/run_source.h"
 #include "studies/metrics/metrics.h"
+#include "studies/variants/variants.h"
 
 namespace ed3r {
 
@@ -47,6 +51,7 @@ struct FigureInputs {
   std::span<const ShownMission> missions;
   std::shared_ptr<const Scene> scene;  // of the missions; null: none
   std::string scene_note;
+  const VariantStudy* variants = nullptr;
 };
 
 // Pure: the same inputs give the same document.

@@ -194,6 +194,21 @@ void AddRunFigures(std::span<const ArmData> arms, const Indices& drawn, std::siz
 
 }  // namespace
 
+FigureSpec VariantFigure(const std::string& first_variant) {
+  return {
+      "variants",
+      "variants",
+      "What each variant changes",
+      fmt::format(
+          "Each variant minus '{}', paired by scenario, with 95 % intervals: mean energy of a mission and "
+          "mission success rate. Filled: the interval does not hold 0. Every variant flew its own "
+          "warm-up and trained its own networks, so that intervals of arms with networks hold the luck of "
+          "training where several flew.",
+          first_variant),
+      {},
+      {}};
+}
+
 const ArmPlan* PlanOf(std::span<const ArmPlan> plans, const ArmData& arm) {
   for (const ArmPlan& plan : plans)
     if (plan.stage == arm.stage && plan.name == arm.name) return &plan;

@@ -12,7 +12,7 @@
 namespace ed3r {
 
 // One figure: file FILES/ID.png and .svg. `kind` is the drawing: overview | insights | decisions | pareto | sites |
-// convergence | map.
+// convergence | map | variants.
 struct FigureSpec {
   std::string id, kind, title, caption;
   std::vector<std::size_t> arms;     // into the run's arms, in drawing order
@@ -31,6 +31,9 @@ inline constexpr std::size_t kMostGroups = 4;
 
 // Missions of an arm from which its convergence is drawn: two points of the curve at least.
 inline constexpr std::size_t kConvergenceStart = 100;
+
+// What variants change: for a sweep that has them, beside the figures of its first variant.
+FigureSpec VariantFigure(const std::string& first_variant);
 
 // The plan of an arm, or null.
 const ArmPlan* PlanOf(std::span<const ArmPlan> plans, const ArmData& arm);

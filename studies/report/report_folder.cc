@@ -15,21 +15,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Of a sweep with variants: of its first one.
 nlohmann::ordered_json FigureData(const Report& report, const RunResults& results, const std::string& dir) {
   ResultReader reader(dir);
-  const std::vector<ArmPlan> plans = ReadArmPlans(reader.StoredRecipe().plan_text);
-  const std::vector<ShownMission> missions = PickMissions(reader, plans);
+  const std::vector<std::string>& variants = report.variants.variants;
+  const std::string ending = variants.empty() ? "" : "@" + variants.front();
+  std::vector<ArmPlan> plans = ReadArmPlans(reader.StoredRecipe().plan_text);
+  std::erase_if(plans, [&](const ArmPlan& plan) { return !plan.name.ends_with(ending); });
+  std::vector<ShownMission> missions = PickMissions(reader, plans);
   FoundScene found;
   for (const ArmPlan& plan : plans)
     if (!missions.empty() && plan.stage == missions.front().stage && plan.name == missions.front().arm)
       found = FindScene(reader, plan.Setting("mission.world"));
+  for (ArmPlan& plan : plans) plan.name.resize(plan.name.size() - ending.size());
+  for (ShownMission& mission : missions) mission.arm.resize(mission.arm.size() - ending.size());
+  const std::vector<ArmData> arms =
+      variants.empty() ? results.arms : ArmsOfVariant(results.arms, variants.front());
   return MakeFigureData({.name = results.name,
-                         .arms = results.arms,
-                         .metrics = report.arms,
+                         .arms = arms,
+                         .metrics = report.told,
                          .plans = plans,
                          .missions = missions,
                          .scene = found.scene,
-                         .scene_note = found.why_not});
+                         .scene_note = found.why_not,
+                         .variants = &report.variants});
 }
 
 // Titles and captions for whoever meets the pictures without index.html.

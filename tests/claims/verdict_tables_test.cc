@@ -85,7 +85,7 @@ TEST(VerdictTextTest, OneNetworkIsSaid) {
   SyntheticDesign single;
   single.networks = 1;
   const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20}, single)};
-  EXPECT_NE(VerdictText(JudgeClaims(PaperClaims(), arms)).find("One trained network"), std::string::npos);
+  EXPECT_NE(VerdictText(JudgeClaims(PaperClaims(), arms)).find("flew with one"), std::string::npos);
 }
 
 TEST(VerdictTextTest, NothingForOtherStudies) {

@@ -224,5 +224,27 @@ TEST(RoundedTest, KeepsWhatAFigureCanShow) {
   EXPECT_TRUE(Rounded(std::numeric_limits<double>::quiet_NaN()).is_null());
 }
 
+TEST(FigureDataTest, VariantsHaveAFigureOfTheirOwn) {
+  std::vector<ArmData> both = AsVariant({Arm("rbs")}, "base");
+  both.push_back(AsVariant({Arm("rbs")}, "heavy").front());
+  for (ArmData& arm : both)
+    for (std::size_t i = 0; i < arm.missions.size(); ++i)
+      arm.missions[i].scenario = static_cast<std::int64_t>(i);
+  for (MissionRecord& mission : both[1].missions) mission.total_j += 2000, mission.movement_j += 2000;
+  const VariantStudy study = CompareVariants(both);
+  const std::vector<ArmData> arms = {Arm("rbs")};
+  const std::vector<ArmMetrics> metrics = {ComputeMetrics(arms[0])};
+  const auto data = MakeFigureData(
+      {.name = "test", .arms = arms, .metrics = metrics, .scene_note = "", .variants = &study});
+  EXPECT_EQ(data.at("figures").back().at("id"), "variants");
+  EXPECT_EQ(data.at("variants").at("base"), "base");
+  EXPECT_EQ(data.at("variants").at("names"), (nlohmann::ordered_json{"heavy"}));
+  const auto& energy = data.at("variants").at("differences").at(0);
+  EXPECT_EQ(energy.at("metric"), "total_energy_kj");
+  EXPECT_EQ(energy.at("difference"), 2);
+  EXPECT_EQ(energy.at("certain"), true);
+  EXPECT_TRUE(DataOf({Arm("rbs")}, {}).at("variants").is_null());
+}
+
 }  // namespace
 }  // namespace ed3r
