@@ -104,7 +104,7 @@ std::string Summary(const ClaimStudy& study) {
                                     counts[verdict] - built - fitted, fitted, built);
       }
       if (const int luck = CountWithinLuck(study); verdict == Verdict::kDiffers && luck > 0)
-        parts.back() += fmt::format(" ({} of them within the luck of a single network)", luck);
+        parts.back() += fmt::format(" ({} of them within the luck of one experiment)", luck);
     }
   return Wrap(fmt::format("{} claims: {}.", study.claims.size(), fmt::join(parts, ", ")), "", kTerminalWidth);
 }
@@ -127,35 +127,36 @@ std::string Unmeasured(const ClaimStudy& study) {
   return text;
 }
 
+// Of the table, in sentences with {} for what a run has.
+constexpr const char* kOrderNote =
+    "An order shows the difference in its least certain part, + as claimed. Differences are paired over "
+    "scenarios; "
+    "p values are two-sided, corrected by Holm over the {} different directional claims; with ! the opposite "
+    "of "
+    "the claim is the likelier. Why each verdict: verdicts.csv.";
+constexpr const char* kLuckNote =
+    "(luck): it differs, but no more than one experiment of the paper's size may by chance (95 % prediction "
+    "interval "
+    "of a single network's, or of 850 missions).";
+constexpr const char* kNetworksNote =
+    "Intervals and p values include the luck of training ({} networks, Student's t). alone: verdicts by the "
+    "missions "
+    "of each network alone, {}.";
+constexpr const char* kTurnsNote =
+    "Arms took turns among their networks differently: they are paired by scenario only.";
+constexpr const char* kOneNetworkNote =
+    "Each arm that asks a network flew with one: its intervals and p values are over missions alone and say "
+    "nothing "
+    "of the luck of training, which may be larger (training.seeds).";
+
 std::string Notes(const ClaimStudy& study) {
-  std::string notes = Wrap(fmt::format("An order shows the difference in its least certain part, + as "
-                                       "claimed. Differences are paired over "
-                                       "scenarios; p values are two-sided, corrected by Holm over the "
-                                       "{} different directional claims; with ! the opposite of the claim is "
-                                       "the likelier. Why each verdict: "
-                                       "verdicts.csv.",
-                                       study.family),
-                           "", kTerminalWidth);
-  if (study.networks > 1) {
-    notes +=
-        Wrap(fmt::format("Intervals and p values include the luck of training ({} networks, Student's "
-                         "t). alone: verdicts by the missions of each network alone, {}. (luck): it differs "
-                         "from the mean of our "
-                         "networks, but lies where a single network of ours may (95 % prediction interval); "
-                         "the paper says nothing of having trained several.",
-                         study.networks, kVerdictLetters),
-             "", kTerminalWidth);
-    if (study.networks_disagree)
-      notes += Wrap("Arms took turns among their networks differently: they are paired by scenario only.", "",
-                    kTerminalWidth);
-  } else {
-    notes += Wrap(
-        "Each arm that asks a network flew with one: its intervals and p values are over missions alone and "
-        "say "
-        "nothing of the luck of training, which may be larger (training.seeds).",
-        "", kTerminalWidth);
-  }
-  return notes;
+  const auto wrapped = [](const std::string& text) { return Wrap(text, "", kTerminalWidth); };
+  std::string notes;
+  if (study.family > 0) notes += wrapped(fmt::format(kOrderNote, study.family));
+  if (CountWithinLuck(study) > 0) notes += wrapped(kLuckNote);
+  if (study.networks < 2) return notes + wrapped(kOneNetworkNote);
+  notes += wrapped(fmt::format(kNetworksNote, study.networks, kVerdictLetters));
+  return study.networks_disagree ? notes + wrapped(kTurnsNote) : notes;
 }
 
 Json ByNetworkJson(const JudgedClaim& judged) {

@@ -25,6 +25,8 @@ double CoarseReach(const Claim& claim, double paper) {
   return std::max(kPoints, kShare * std::min(paper, 100 - paper));
 }
 
+constexpr std::size_t kPaperMissions = 850;
+
 struct ParsedClaim {
   const Claim* claim;
   std::optional<Expression> expression;  // none for set-up facts and what no run can show
@@ -107,7 +109,6 @@ void DecideNumber(const Claim& claim, Judgement& judged) {
 
 // The longest mission of many is longer than that of few: it compares with the paper's only at the paper's number.
 bool GrowsWithTheRun(const ParsedClaim& parsed, std::span<const ArmData> arms) {
-  constexpr std::size_t kPaperMissions = 850;
   return std::any_of(parsed.cells.begin(), parsed.cells.end(), [&](const Cell& cell) {
     if (MetricDefinitions()[cell.metric].estimate != Estimate::kMaximum) return false;
     const auto arm = std::find_if(arms.begin(), arms.end(), [&](const ArmData& data) {
@@ -123,16 +124,33 @@ bool AsksNetworks(const ParsedClaim& parsed, const ResampledArms& arms) {
                      [&](const Cell& cell) { return arms.At(cell).network_count > 1; });
 }
 
-bool IsWithinLuck(const JudgedClaim& judged) {
-  const auto paper = PaperValueOf(judged.claim);
-  if (judged.all.verdict != Verdict::kDiffers || judged.claim.kind == "order" || !paper) return false;
+// How far one more network's value may lie from ours; NaN with fewer than two.
+double ReachOfANetwork(const JudgedClaim& judged) {
   std::vector<double> alone;
   for (const Judgement& network : judged.by_network) alone.push_back(network.ours);
   const Interval of_mean = MeanInterval(alone);
-  if (!of_mean.Exists()) return false;
-  const double half_width =
-      0.5 * (of_mean.hi - of_mean.lo) * std::sqrt(1.0 + static_cast<double>(alone.size()));
-  return std::abs(judged.all.ours - paper->value) <= half_width + paper->half_unit;
+  return 0.5 * (of_mean.hi - of_mean.lo) * std::sqrt(1.0 + static_cast<double>(alone.size()));
+}
+
+// How far the value of the paper's number of missions may lie from ours, of `missions`.
+double ReachOfMissions(const Judgement& judged, std::size_t missions) {
+  return 0.5 * (judged.hi - judged.lo) *
+         std::sqrt(1.0 + static_cast<double>(missions) / static_cast<double>(kPaperMissions));
+}
+
+bool IsWithinLuck(const JudgedClaim& judged, const ParsedClaim& parsed, const ResampledArms& arms,
+                  std::span<const ArmData> data) {
+  const auto paper = PaperValueOf(judged.claim);
+  if (judged.all.verdict != Verdict::kDiffers || !paper || parsed.cells.empty()) return false;
+  const std::string& name = parsed.cells.front().arm;
+  const auto arm = std::find_if(data.begin(), data.end(), [&](const ArmData& flown) {
+    return !flown.missions.empty() && (flown.name == name || P85Name(flown.name) == name);
+  });
+  if (arm == data.end()) return false;
+  const bool several = AsksNetworks(parsed, arms);
+  if (!several && arm->missions.front().network >= 0) return false;  // one network: its luck is not known
+  const double reach = several ? ReachOfANetwork(judged) : ReachOfMissions(judged.all, arm->missions.size());
+  return std::abs(judged.all.ours - paper->value) <= reach + paper->half_unit;  // false for NaN
 }
 
 // One round: every claim by the missions of one set of arms.
@@ -280,15 +298,14 @@ ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData
   const std::vector<Judgement> judged = round.Judge();
   study.family = round.Family();
   for (std::size_t i = 0; i < claims.size(); ++i) study.claims.push_back({claims[i], judged[i], {}});
-  if (study.networks < 2) return study;
-  for (int network = 0; network < study.networks; ++network) {
+  for (int network = 0; study.networks > 1 && network < study.networks; ++network) {
     const std::vector<ArmData> part = all.FlownBy(network);
     const std::vector<Judgement> alone = Round(parsed, claims, part, ResampledArms(part, cells)).Judge();
     for (std::size_t i = 0; i < claims.size(); ++i)
       if (claims[i].kind != "setup") study.claims[i].by_network.push_back(alone[i]);
   }
   for (std::size_t i = 0; i < claims.size(); ++i)
-    study.claims[i].within_luck = AsksNetworks(parsed[i], all) && IsWithinLuck(study.claims[i]);
+    study.claims[i].within_luck = IsWithinLuck(study.claims[i], parsed[i], all, arms);
   return study;
 }
 

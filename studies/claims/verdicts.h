@@ -78,8 +78,9 @@ struct JudgedClaim {
   Judgement all;  // with every mission
   std::vector<Judgement>
       by_network;  // with the missions of one trained network alone; empty with fewer than two
-  // A number that differs from the mean over our networks, though no more than one more network of ours might: the
-  // paper's value lies in the 95 % prediction interval of a single network (it says nothing of having trained several).
+  // A number that differs, though no more than one experiment of the paper's size might by chance: the paper's value
+  // lies in the 95 % prediction interval of a single network's (it says nothing of having trained several), or, where no
+  // network is asked, of 850 missions.
   bool within_luck = false;
 };
 
@@ -101,7 +102,7 @@ std::map<Verdict, int> CountVerdicts(const ClaimStudy& study);
 int CountReproducedByConstruction(const ClaimStudy& study);
 // Reproduced numbers that the perception was calibrated on (sweeps/calibration): no prediction.
 int CountReproducedByCalibration(const ClaimStudy& study);
-// Numbers that differ within the luck of a single network.
+// Numbers that differ within the luck of one experiment of the paper's size.
 int CountWithinLuck(const ClaimStudy& study);
 // Of one claim over the single networks.
 std::map<Verdict, int> CountByNetwork(const JudgedClaim& claim);

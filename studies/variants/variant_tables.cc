@@ -64,7 +64,7 @@ std::string ChangeCounts(const VariantStudy& study) {
       const auto contradicts = [&](const VerdictChange& change) {
         return here(change) && change.Contradicts();
       };
-      text += fmt::format(": {} of {} claims, {} of them between 'holds' and 'differs'",
+      text += fmt::format(": {} of {} claims, {} of them between 'holds' and 'differs beyond luck'",
                           std::count_if(study.changes.begin(), study.changes.end(), here),
                           study.verdicts.front().claims.size(),
                           std::count_if(study.changes.begin(), study.changes.end(), contradicts));

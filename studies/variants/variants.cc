@@ -106,7 +106,8 @@ void AddChanges(const ClaimStudy& base, const ClaimStudy& here, const std::strin
                 std::vector<VerdictChange>& changes) {
   for (std::size_t i = 0; i < base.claims.size(); ++i) {
     const Verdict was = base.claims[i].all.verdict, is = here.claims[i].all.verdict;
-    if (was != is) changes.push_back({base.claims[i].claim.id, variant, was, is});
+    const bool luck = base.claims[i].within_luck || here.claims[i].within_luck;
+    if (was != is) changes.push_back({base.claims[i].claim.id, variant, was, is, luck});
   }
 }
 
@@ -134,6 +135,7 @@ std::vector<ArmData> ArmsOfVariant(std::span<const ArmData> arms, const std::str
 
 bool VerdictChange::Contradicts() const {
   const auto holds = [](Verdict v) { return v == Verdict::kReproduced || v == Verdict::kDirectionHolds; };
+  if (within_luck) return false;
   return (holds(base) && here == Verdict::kDiffers) || (base == Verdict::kDiffers && holds(here));
 }
 

@@ -36,8 +36,9 @@ struct VariantDifference {
 struct VerdictChange {
   std::string claim, variant;
   Verdict base, here;
+  bool within_luck = false;  // the one that differs does so within the luck of one experiment (JudgedClaim)
 
-  // One run has the claim hold, in size or at least in direction, the other has it differ.
+  // One run has the claim hold, in size or at least in direction, the other has it differ beyond luck.
   bool Contradicts() const;
 };
 

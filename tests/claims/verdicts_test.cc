@@ -1,6 +1,7 @@
 // Verdicts on synthetic runs whose truth is known.
 #include "studies/claims/verdicts.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -115,7 +116,12 @@ TEST(VerdictsTest, OneNetworkOfThePaperMayDifferFromOurMean) {
     EXPECT_EQ(judged.all.verdict, verdict) << paper;
     EXPECT_EQ(judged.within_luck, luck) << paper;
   }
-  EXPECT_FALSE(JudgeOne(Energy("rbs", "22"), arms).within_luck) << "no network, no luck";
+  // 280 missions of 20 kJ, spread 6: +- 0.7; 850 more: x sqrt(1 + 280 / 850).
+  const Judgement rbs = JudgeOne(Energy("rbs", "22"), arms).all;
+  EXPECT_EQ(rbs.verdict, Verdict::kDiffers);
+  EXPECT_FALSE(JudgeOne(Energy("rbs", "22"), arms).within_luck) << "no network, no luck of training";
+  const std::string near = fmt::format("{:.2f}", rbs.ours + 1.1 * (rbs.hi - rbs.ours));
+  EXPECT_TRUE(JudgeOne(Energy("rbs", near), arms).within_luck) << near;
 }
 
 TEST(VerdictsTest, ValuesThatDoNotExist) {
