@@ -13,6 +13,7 @@
 #include "studies/metrics/number_text.h"
 #include "studies/report/files.h"
 #include "studies/report/load.h"
+#include "studies/report/provenance.h"
 #include "studies/variants/variants.h"
 
 namespace ed3r {
@@ -25,10 +26,6 @@ struct Options {
   std::string out;
   bool json = false;
 };
-
-constexpr const char* kOtherSeeds =
-    "\nThe runs have different seeds: a scenario of one is another draw at the same places, with other "
-    "networks.\n";
 
 // A run is called by its folder.
 std::string LabelOf(const std::string& dir) {
@@ -59,6 +56,14 @@ nlohmann::ordered_json JsonOf(const VariantStudy& study) {
   return json;
 }
 
+// What made the runs, by their labels.
+nlohmann::ordered_json ManifestOf(const std::vector<std::string>& dirs,
+                                  const std::vector<std::string>& labels) {
+  nlohmann::ordered_json runs = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < dirs.size(); ++i) runs[labels[i]] = ManifestJson(ReadProvenance(dirs[i]));
+  return runs;
+}
+
 int Compare(const Options& options) {
   if (options.dirs.size() < 2)
     throw UserError(fmt::format("compare: {} is one run; at least two are needed", options.dirs.front()));
@@ -77,17 +82,19 @@ int Compare(const Options& options) {
       throw UserError(fmt::format("{}: has variants of its own; 'ed3r report {}' compares them", dir, dir));
     for (ArmData& arm : AsVariant(run.arms, label)) arms.push_back(std::move(arm));
   }
-  const VariantStudy study = CompareVariants(arms);
+  VariantStudy study = CompareVariants(arms);
+  study.same_draws = seeds.size() == 1;
   if (study.differences.empty())
     throw UserError(
         fmt::format("{}: no arm of the other runs has the name of one of its arms", options.dirs.front()));
-  const std::string text = VariantText(study) + (seeds.size() > 1 ? kOtherSeeds : "");
+  const std::string text = VariantText(study);
   if (!options.out.empty()) {
     const fs::path out(options.out);
     MakeFolder(out);
     WriteWhole(out / "compare.txt", text);
     WriteWhole(out / "differences.csv", DifferenceCsv(study));
     WriteWhole(out / "verdicts.csv", VariantVerdictCsv(study));
+    WriteWhole(out / "manifest.json", ManifestOf(options.dirs, labels).dump(2) + "\n");
   }
   fmt::print("{}", options.json ? JsonOf(study).dump(2) + "\n" : text);
   return kDone;
@@ -102,7 +109,8 @@ Command AddCompare(CLI::App& program) {
       "Runs of the same arms, each compared with the first: differences paired by scenario, and the paper's "
       "claims that are judged otherwise");
   parser->add_option("DIR", options->dirs, "Run directories")->required();
-  parser->add_option("--out", options->out, "Folder for compare.txt, differences.csv and verdicts.csv");
+  parser->add_option("--out", options->out,
+                     "Folder for compare.txt, differences.csv, verdicts.csv and manifest.json");
   parser->add_flag("--json", options->json, "Print JSON");
   parser->footer(
       "Runs of one seed meet the same scenarios; runs of different seeds are compared as independent draws "

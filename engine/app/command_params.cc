@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "engine/agents/strategy.h"
 #include "engine/app/commands.h"
 #include "engine/app/words.h"
 #include "engine/config/parameters.h"
@@ -17,10 +18,19 @@ struct Options {
   bool json = false;
 };
 
+std::string StrategyNames() {
+  std::vector<std::string_view> names;
+  for (const Strategy& strategy : Strategies()) names.push_back(strategy.name);
+  return fmt::format("{}", fmt::join(names, " | "));
+}
+
 std::vector<ParameterInfo> Selected(const std::string& filter) {
   std::vector<ParameterInfo> selected;
   for (const ParameterInfo& parameter : Parameters())
     if (parameter.key.find(filter) != std::string::npos) selected.push_back(parameter);
+  for (ParameterInfo& parameter :
+       selected)  // which the table of parameters, above the strategies, does not know
+    if (parameter.key == "mission.strategy") parameter.allowed = StrategyNames();
   if (selected.empty())
     throw UserError(
         fmt::format("params: no key contains '{}'{}", filter, DidYouMean(filter, ParameterKeys())));
@@ -41,13 +51,15 @@ void PrintJson(const std::vector<ParameterInfo>& parameters) {
   fmt::print("{}\n", list.dump(2));
 }
 
+constexpr std::size_t kWidestAllowed = 40;  // a longer list pushes its own line only
+
 void PrintTable(const std::vector<ParameterInfo>& parameters) {
   std::size_t key_width = 0, default_width = 0, unit_width = 0, allowed_width = 0;
   for (const ParameterInfo& p : parameters) {
     key_width = std::max(key_width, p.key.size());
     default_width = std::max(default_width, p.default_value.size());
     unit_width = std::max(unit_width, p.unit.size());
-    allowed_width = std::max(allowed_width, p.allowed.size());
+    if (p.allowed.size() <= kWidestAllowed) allowed_width = std::max(allowed_width, p.allowed.size());
   }
   std::string subject;
   for (const ParameterInfo& p : parameters) {

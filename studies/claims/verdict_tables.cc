@@ -59,6 +59,7 @@ std::string PText(const Judgement& judged) {
 
 // "2r 3d": verdicts of the networks alone.
 std::string NetworksText(const JudgedClaim& claim) {
+  if (!claim.asks_networks) return "";
   std::string text;
   for (const auto& [verdict, count] : CountByNetwork(claim))
     text += fmt::format("{}{}{}", text.empty() ? "" : " ", count, LetterOf(verdict));
@@ -128,12 +129,22 @@ std::string Unmeasured(const ClaimStudy& study) {
 }
 
 // Of the table, in sentences with {} for what a run has.
+constexpr const char* kRules =
+    "reproduced: the paper's number is inside the interval, or within the claim's tolerance; or an order "
+    "holds and so "
+    "do the sizes that the paper prints. direction holds: p < 0.05, another size. differs: outside, or the "
+    "opposite "
+    "order holds. not decidable: an order without p < 0.05 either way; a number whose interval would hold "
+    "almost "
+    "anything (more than half of the value, for percentages half of it or of its complement, at least 5 "
+    "points).";
 constexpr const char* kOrderNote =
-    "An order shows the difference in its least certain part, + as claimed. Differences are paired over "
-    "scenarios; "
-    "p values are two-sided, corrected by Holm over the {} different directional claims; with ! the opposite "
-    "of "
-    "the claim is the likelier. Why each verdict: verdicts.csv.";
+    "An order shows the difference in its least certain part, + as claimed, and the paper's in the same "
+    "part; "
+    "verdicts.csv tells which, and why each verdict. Differences are paired over scenarios; p values are "
+    "two-sided, "
+    "corrected by Holm over the {} different directional claims; with ! the opposite of the claim is the "
+    "likelier.";
 constexpr const char* kLuckNote =
     "(luck): it differs, but no more than one experiment of the paper's size may by chance (95 % prediction "
     "interval "
@@ -151,7 +162,7 @@ constexpr const char* kOneNetworkNote =
 
 std::string Notes(const ClaimStudy& study) {
   const auto wrapped = [](const std::string& text) { return Wrap(text, "", kTerminalWidth); };
-  std::string notes;
+  std::string notes = wrapped(kRules);
   if (study.family > 0) notes += wrapped(fmt::format(kOrderNote, study.family));
   if (CountWithinLuck(study) > 0) notes += wrapped(kLuckNote);
   if (study.networks < 2) return notes + wrapped(kOneNetworkNote);
@@ -173,15 +184,15 @@ std::string ClaimInWords(const Claim& claim, int width) {
   std::string metric = Spoken(claim.metric);
   std::string what = claim.comparison.empty() ? claim.strategy : claim.comparison;
   if (claim.comparison.empty()) return Cut(what + ' ' + metric, width);
-  if (what.starts_with("100*(") && what.ends_with(")")) what = what.substr(5, what.size() - 6);
-  const std::string words = claim.metric == "pareto" ? what : metric + ": " + what;
-  return DisplayWidth(words) <= width ? words : Cut('"' + claim.exact_words + '"', width);
+  if (claim.metric == "pareto") metric = "energy and MSR";
+  const std::string words = metric + ": " + what;
+  return DisplayWidth(words) <= width ? words : Cut(metric + ", \"" + claim.exact_words + '"', width);
 }
 
 std::string VerdictText(const ClaimStudy& study) {
   if (!study.HasArms()) return "";
-  return TrimLineEnds("What the paper claims\n" + Summary(study) + '\n' + Table(study) + '\n' +
-                      Unmeasured(study) + Notes(study));
+  return TrimLineEnds("What the paper claims\n" + Summary(study) + '\n' + Notes(study) + '\n' + Table(study) +
+                      '\n' + Unmeasured(study));
 }
 
 Json VerdictJson(const ClaimStudy& study) {
@@ -237,6 +248,16 @@ std::string VerdictCsv(const ClaimStudy& study) {
     for (const Verdict verdict : kVerdicts) csv += fmt::format(",{}", counts[verdict]);
     csv += '\n';
   }
+  return csv;
+}
+
+std::string ByNetworkCsv(const ClaimStudy& study) {
+  std::string csv = "claim,network,verdict,ours\n";
+  for (const JudgedClaim& judged : study.claims)
+    for (std::size_t network = 0; judged.asks_networks && network < judged.by_network.size(); ++network)
+      csv +=
+          fmt::format("{},{},{},{}\n", judged.claim.id, network + 1,
+                      NameOf(judged.by_network[network].verdict), CsvNumber(judged.by_network[network].ours));
   return csv;
 }
 

@@ -22,6 +22,9 @@ nlohmann::ordered_json VerdictJson(const ClaimStudy& study);
 // VerdictText is empty.
 std::string VerdictCsv(const ClaimStudy& study);
 
+// Columns claim,network,verdict,ours: by the missions of each network alone, of the claims that ask networks.
+std::string ByNetworkCsv(const ClaimStudy& study);
+
 // What is claimed in a few words, at most `width` characters.
 std::string ClaimInWords(const Claim& claim, int width);
 

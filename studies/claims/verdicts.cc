@@ -304,8 +304,10 @@ ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData
     for (std::size_t i = 0; i < claims.size(); ++i)
       if (claims[i].kind != "setup") study.claims[i].by_network.push_back(alone[i]);
   }
-  for (std::size_t i = 0; i < claims.size(); ++i)
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    study.claims[i].asks_networks = AsksNetworks(parsed[i], all);
     study.claims[i].within_luck = IsWithinLuck(study.claims[i], parsed[i], all, arms);
+  }
   return study;
 }
 

@@ -82,6 +82,8 @@ struct JudgedClaim {
   // lies in the 95 % prediction interval of a single network's (it says nothing of having trained several), or, where no
   // network is asked, of 850 missions.
   bool within_luck = false;
+  bool asks_networks =
+      false;  // arms of the claim flew several networks: by_network is more than parts of the missions
 };
 
 struct ClaimStudy {

@@ -56,7 +56,7 @@ constexpr MetricDefinition kMetrics[] = {
     {"er_pct", G::kDecisions, "explored (ER)", "%", 2, E::kShareOfTimesteps, kPercent,
      [](const M& m) { return static_cast<double>(m.random_motions); }, Timesteps},
     {"duration_mean_min", G::kTime, "mission, mean", "min", 2, E::kMean, kMinute, Duration, One},
-    {"duration_p85_min", G::kTime, "mission, P85", "min", 2, E::kPercentile85, kMinute, Duration, One},
+    {"duration_p85_min", G::kTime, "mission, 85 % under", "min", 2, E::kPercentile85, kMinute, Duration, One},
     {"duration_max_min", G::kTime, "mission, longest", "min", 2, E::kMaximum, kMinute, Duration, One},
     {"within_10min_pct", G::kTime, "within 10 min", "%", 2, E::kRate, kPercent,
      [](const M& m) { return m.duration_s <= kTenMinutes_s ? 1.0 : 0.0; }, One},

@@ -47,8 +47,11 @@ Report MakeReport(const RunResults& results) {
 }
 
 std::string ReportText(const Report& report) {
-  std::string text = report.name + "\n\n";
-  if (report.arms.empty()) return text + "No missions.\n";
+  std::string text = report.name;
+  if (report.arms.empty()) return text + "\n\nNo missions.\n";
+  if (report.claims.networks > 1)
+    text += fmt::format(", {} trained networks of each kind", report.claims.networks);
+  text += "\n\n";
   if (!report.variants.variants.empty())
     text += fmt::format("Variant '{}':\n\n", report.variants.variants.front());
   text += ResultTable(report.told, PaperClaims());
@@ -76,6 +79,7 @@ void WriteReport(const Report& report, const std::string& dir) {
   WriteWhole(base / "metrics.csv", ResultCsv(report.arms, PaperClaims()));
   WriteWhole(base / "generalisation.csv", GeneralisationCsv(report.generalisation));
   WriteWhole(base / "verdicts.csv", VerdictCsv(report.claims));
+  if (report.claims.networks > 1) WriteWhole(base / "by_network.csv", ByNetworkCsv(report.claims));
   WriteWhole(base / "convergence.csv", ConvergenceCsv(report.convergence));
   if (!report.variants.variants.empty()) {
     WriteWhole(base / "variants.csv", DifferenceCsv(report.variants));

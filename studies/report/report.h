@@ -43,8 +43,8 @@ std::string ReportText(const Report& report);
 // {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson, "claims": as VerdictJson}.
 nlohmann::ordered_json ReportJson(const Report& report);
 
-// Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv, convergence.csv, where there are variants
-// variants.csv and variant_verdicts.csv, and tables/ID.md, .tex, .csv and .json of each table into `dir`, which it makes
+// Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv, convergence.csv, where several networks flew
+// by_network.csv, where there are variants variants.csv and variant_verdicts.csv, and tables/ID.md, .tex, .csv and .json of each table into `dir`, which it makes
 // if it has to; each file is replaced whole or left as it was. Throws UserError when it cannot.
 void WriteReport(const Report& report, const std::string& dir);
 

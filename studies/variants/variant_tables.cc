@@ -16,6 +16,10 @@ namespace {
 constexpr int kArmWidth = 14, kVariantWidth = 26, kCellWidth = 26;
 constexpr int kIdWidth = 5, kFewestWords = 24, kMostWords = 60;
 
+std::string VerdictWithLuck(const JudgedClaim& judged) {
+  return std::string(NameOf(judged.all.verdict)) + (judged.within_luck ? " (luck)" : "");
+}
+
 std::string CellText(const VariantDifference& d) {
   if (std::isnan(d.difference)) return "–";
   return fmt::format("{:+.1f}{} [{:+.1f}, {:+.1f}]", d.difference,
@@ -31,7 +35,8 @@ std::string DifferenceTable(const VariantStudy& study) {
     return fmt::format("{}, {}", definition.label, definition.unit);
   };
   std::string text =
-      fmt::format("Variants minus '{}', paired by scenario (* interval without 0)\n", study.variants[0]);
+      fmt::format("Variants minus '{}', {} (* interval without 0)\n", study.variants[0],
+                  study.same_draws ? "paired by scenario" : "of other seeds: other draws at the same places");
   text += Pad("arm", kArmWidth, Align::kLeft) + Pad("variant", kVariantWidth, Align::kLeft);
   for (const char* metric : kComparedMetrics) text += Pad(heading(metric), kCellWidth, Align::kRight);
   text += fmt::format("\n{}\n", Rule(kTerminalWidth));
@@ -49,9 +54,13 @@ std::string DifferenceTable(const VariantStudy& study) {
                  kTerminalWidth);
   const auto intervals = std::count_if(study.differences.begin(), study.differences.end(),
                                        [](const auto& d) { return !std::isnan(d.lo) && !d.OneNetwork(); });
+  const auto stars = std::count_if(study.differences.begin(), study.differences.end(),
+                                   [](const VariantDifference& d) { return d.Certain(); });
   return text +
-         Wrap(fmt::format("{} intervals, each 95 % by itself: up to {:.0f} stars are expected by chance.",
-                          intervals, std::ceil(0.05 * static_cast<double>(intervals))),
+         Wrap(fmt::format(
+                  "{} of {} intervals have a star; each is 95 % by itself, so that about {:.0f} would by "
+                  "chance (the three of an arm go together).",
+                  stars, intervals, std::ceil(0.05 * static_cast<double>(intervals))),
               "", kTerminalWidth);
 }
 
@@ -72,6 +81,24 @@ std::string ChangeCounts(const VariantStudy& study) {
     text += "\n";
   }
   return text;
+}
+
+// Every changed verdict, of two variants.
+std::string ChangeList(const VariantStudy& study) {
+  if (study.variants.size() != 2 || study.changes.empty()) return "";
+  constexpr int kVerdictWidth = 20, kWords = kTerminalWidth - kIdWidth - 2 * kVerdictWidth;
+  std::string text;
+  for (std::size_t i = 0; i < study.verdicts.front().claims.size(); ++i) {
+    const JudgedClaim& before = study.verdicts.front().claims[i];
+    const JudgedClaim& after = study.verdicts.back().claims[i];
+    if (before.all.verdict == after.all.verdict) continue;
+    text += Pad(before.claim.id, kIdWidth, Align::kLeft) +
+            Pad(ClaimInWords(before.claim, kWords - 1), kWords, Align::kLeft) +
+            Pad(VerdictWithLuck(before), kVerdictWidth, Align::kLeft) + VerdictWithLuck(after) + "\n";
+  }
+  return fmt::format("\n{}{}{}{}\n{}\n{}", Pad("", kIdWidth, Align::kLeft),
+                     Pad("changed verdicts", kWords, Align::kLeft), Pad("1", kVerdictWidth, Align::kLeft),
+                     "2", Rule(kTerminalWidth), text);
 }
 
 // Which side the evidence is on, of one claim alone: a few networks cannot pass Holm's correction over all claims.
@@ -105,7 +132,8 @@ std::string ChangeMatrix(const VariantStudy& study) {
             signs + "\n";
   }
   if (rows.empty()) return "";
-  std::string heading = Pad("", kIdWidth, Align::kLeft) + Pad("orders and comparisons", width, Align::kLeft);
+  std::string heading =
+      Pad("", kIdWidth, Align::kLeft) + Pad("sides of orders and comparisons", width, Align::kLeft);
   for (std::size_t v = 0; v < study.variants.size(); ++v) heading += fmt::format("{:>3}", v + 1);
   return fmt::format("\n{}\n{}\n{}", heading, Rule(DisplayWidth(heading)), rows) +
          Wrap(
@@ -119,7 +147,7 @@ std::string ChangeMatrix(const VariantStudy& study) {
 std::string ChangeTable(const VariantStudy& study) {
   if (!study.verdicts.front().HasArms()) return "";
   return fmt::format("\nClaims of the paper judged otherwise than under '{}'\n", study.variants[0]) +
-         ChangeCounts(study) + ChangeMatrix(study);
+         ChangeCounts(study) + ChangeList(study) + ChangeMatrix(study);
 }
 
 }  // namespace
@@ -147,7 +175,7 @@ std::string VariantVerdictCsv(const VariantStudy& study) {
     csv += fmt::format("{},{},{},{},{}", claim.id, CsvField(claim.strategy), claim.metric, claim.kind,
                        CsvField(claim.comparison));
     for (const ClaimStudy& verdicts : study.verdicts)
-      csv += fmt::format(",{}", NameOf(verdicts.claims[i].all.verdict));
+      csv += fmt::format(",{}", VerdictWithLuck(verdicts.claims[i]));
     csv += "\n";
   }
   return csv;

@@ -48,6 +48,8 @@ struct VariantStudy {
   std::vector<VariantDifference> differences;  // by variant, then arm, then metric: all of kComparedMetrics
   std::vector<ClaimStudy> verdicts;            // one per variant
   std::vector<VerdictChange> changes;
+  bool same_draws =
+      true;  // false for runs of different seeds: a scenario is then another draw at the same places
 };
 
 // Names of the variants among the arms, in their order; empty where no arm has one.
@@ -62,13 +64,14 @@ std::vector<ArmData> AsVariant(std::vector<ArmData> arms, const std::string& var
 // Nothing is compared, and `variants` is empty, where the arms have no variants.
 VariantStudy CompareVariants(std::span<const ArmData> arms);
 
-// Differences, how many verdicts change, and which orders and comparisons, in lines of at most kTerminalWidth characters; empty without variants.
+// Differences, how many verdicts change (of two variants: which), and the sides of orders and comparisons, in lines of at most kTerminalWidth characters; empty without variants.
 std::string VariantText(const VariantStudy& study);
 
 // Columns arm,variant,metric,base,difference,lo,hi,pairs,base_networks,networks.
 std::string DifferenceCsv(const VariantStudy& study);
 
-// Columns claim,strategy,metric,kind,compared,VARIANT...: the verdict of every claim in every variant.
+// Columns claim,strategy,metric,kind,compared,VARIANT...: the verdict of every claim in every variant, "differs (luck)"
+// where it is within the luck of one experiment.
 std::string VariantVerdictCsv(const VariantStudy& study);
 
 }  // namespace ed3r

@@ -44,7 +44,7 @@ TEST_F(CompareTest, DifferencesArePairedAndWritten) {
   EXPECT_EQ(energy.at("pairs"), 28);
   EXPECT_LT(energy.at("difference"), 0.0) << "a smaller battery ends missions earlier";
   EXPECT_LE(energy.at("lo"), energy.at("difference"));
-  for (const char* file : {"compare.txt", "differences.csv", "verdicts.csv"})
+  for (const char* file : {"compare.txt", "differences.csv", "verdicts.csv", "manifest.json"})
     EXPECT_FALSE(ReadAll(fs::path(out) / file).empty()) << file;
 }
 
@@ -53,7 +53,7 @@ TEST_F(CompareTest, ARunEqualsItself) {
   const CommandResult result = Ed3r(fmt::format("compare {} {}/", Dir("usual"), Dir("again")));
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("again: 0 of 177 claims"), std::string::npos) << result.out;
-  EXPECT_EQ(result.out.find("different seeds"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("of other seeds"), std::string::npos) << result.out;
 }
 
 TEST_F(CompareTest, OtherSeedsAreSaid) {
@@ -61,7 +61,7 @@ TEST_F(CompareTest, OtherSeedsAreSaid) {
       "run {}/sweeps/rbs.yaml --missions 28 --seed 5 --quiet --out {}", ED3R_SOURCE_DIR, Dir("reseeded")));
   ASSERT_EQ(flown.status, 0) << flown.err;
   const CommandResult result = Ed3r(fmt::format("compare {} {}", Dir("usual"), Dir("reseeded")));
-  EXPECT_NE(result.out.find("different seeds"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("of other seeds"), std::string::npos) << result.out;
 }
 
 TEST_F(CompareTest, WhatCannotBeComparedIsSaid) {
