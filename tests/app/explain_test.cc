@@ -187,7 +187,7 @@ TEST_F(ExplainTest, PicturesOfTheFastTierSayThatTheMissionUsedNone) {
 }
 
 std::vector<std::string> Cells(const std::string& line) {
-  std::istringstream text(line);
+  std::istringstream text(line + ',');  // so that an empty last cell counts
   std::vector<std::string> cells;
   for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
   return cells;
