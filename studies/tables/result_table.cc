@@ -163,17 +163,17 @@ std::string PaperNotes(std::span<const ArmMetrics> arms, const std::vector<Claim
 std::string IntervalNotes(int width) {
   return Wrap(
       "Intervals hold 95 % and are over missions; where an arm flew with several trained networks "
-      "(training.seeds) they are "
-      "at least as wide as Student's t over the networks, with one network the luck of training is not in "
-      "them. Means: Student's t. MSR, FP, BD and missions within 10 min: Wilson. MSCS, seconds per timestep "
-      "and "
-      "mean power, ratios of totals: linearised variance between missions. WER, OR, ER and model shares: "
-      "Wilson "
-      "with the effective sample size, because the timesteps of a mission are alike and WER rests on few "
-      "missions (with fewer than 10 failed ones its upper end is too low). P85, the 85th percentile: order "
-      "statistics. The longest mission has none. Look-forward accuracy is relative to the worst mission of "
-      "its "
-      "arm, and so is its interval. – no value.",
+      "(training.seeds) they are at least as wide as Student's t over the networks, with one network the "
+      "luck "
+      "of training is not in them. Means: Student's t. MSR, FP, BD and missions within 10 min: Wilson. MSCS, "
+      "seconds per timestep and mean power, ratios of totals: linearised variance between missions. WER, OR, "
+      "ER and model shares: Wilson with the effective sample size, because the timesteps of a mission are "
+      "alike "
+      "and WER rests on few missions (with fewer than 10 failed ones its upper end is too low). What 85 % of "
+      "the "
+      "missions stay under: order statistics. The longest mission has none. Look-forward accuracy is "
+      "relative to "
+      "the worst mission of the network, and so is its interval. – no value.",
       "", width);
 }
 
