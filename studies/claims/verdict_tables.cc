@@ -86,9 +86,7 @@ std::string Table(const ClaimStudy& study) {
     const std::string paper = order ? Short(judged.all.paper, true) : judged.claim.paper_value;
     const std::string about = judged.claim.source == "about" ? "~" : "";
     text += Line(judged.claim.id, ClaimInWords(judged.claim, kClaimWidth - 1), about + paper,
-                 OursText(judged.all, order), PText(judged.all),
-                 std::string(NameOf(judged.all.verdict)) + (judged.within_luck ? " (luck)" : ""),
-                 NetworksText(judged));
+                 OursText(judged.all, order), PText(judged.all), NameWithLuck(judged), NetworksText(judged));
   }
   return text;
 }

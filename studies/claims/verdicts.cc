@@ -261,6 +261,10 @@ std::string_view NameOf(Verdict verdict) {
   return "";
 }
 
+std::string NameWithLuck(const JudgedClaim& judged) {
+  return std::string(NameOf(judged.all.verdict)) + (judged.within_luck ? " (luck)" : "");
+}
+
 char LetterOf(Verdict verdict) {
   switch (verdict) {
     case Verdict::kReproduced:

@@ -86,6 +86,9 @@ struct JudgedClaim {
       false;  // arms of the claim flew several networks: by_network is more than parts of the missions
 };
 
+// The verdict as tables tell it: "differs (luck)" where it is within_luck.
+std::string NameWithLuck(const JudgedClaim& judged);
+
 struct ClaimStudy {
   std::vector<JudgedClaim> claims;  // in the order of the paper's list
   int family = 0;                   // different directional claims that p values are corrected for

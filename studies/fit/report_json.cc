@@ -1,13 +1,12 @@
 #include <cmath>
 
 #include "studies/fit/report.h"
+#include "studies/metrics/number_text.h"
 
 namespace ed3r {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json Pair(const Interval& interval) {
   return std::isnan(interval.low) ? Json(nullptr) : Json::array({interval.low, interval.high});
@@ -24,7 +23,7 @@ Json LogJson(const FlightLog& log) {
           {"drop_outs", log.drop_outs},
           {"spikes", log.spikes},
           {"climb_from", log.format.climb_from == ClimbFrom::kAltitude ? "altitude" : "column"},
-          {"climb_drift_m", Number(log.climb_drift_m)},
+          {"climb_drift_m", JsonNumber(log.climb_drift_m)},
           {"notes", log.format.notes}};
 }
 
@@ -49,7 +48,7 @@ Json AssessmentJson(const Assessment& assessment) {
                        {"duration_s", flight.duration_s},
                        {"measured_j", flight.measured_j},
                        {"predicted_j", flight.predicted_j},
-                       {"error_pct", Number(flight.ErrorPct())}});
+                       {"error_pct", JsonNumber(flight.ErrorPct())}});
   for (const HoverPower& entry : assessment.hover)
     hover.push_back({{"mass_kg", entry.mass_kg},
                      {"rows", entry.rows},
@@ -57,7 +56,7 @@ Json AssessmentJson(const Assessment& assessment) {
                      {"measured_w", entry.measured_w},
                      {"predicted_w", entry.predicted_w},
                      {"still_air_w", entry.still_air_w > 0.0 ? Json(entry.still_air_w) : Json(nullptr)},
-                     {"error_pct", Number(entry.ErrorPct())}});
+                     {"error_pct", JsonNumber(entry.ErrorPct())}});
   return {{"median_flight_energy_error_pct", assessment.median_error_pct},
           {"p90_flight_energy_error_pct", assessment.p90_error_pct},
           {"max_flight_energy_error_pct", assessment.max_error_pct},
@@ -126,7 +125,7 @@ Json ToJson(const FitReport& report) {
                {"models", models},
                {"log", LogJson(report.log)}};
   if (report.evaluate_log) json["evaluate_log"] = LogJson(*report.evaluate_log);
-  json["hover_scaling"] = {{"exponent", Number(report.scaling.exponent)},
+  json["hover_scaling"] = {{"exponent", JsonNumber(report.scaling.exponent)},
                            {"ci95", Pair({0.0, report.scaling.low, report.scaling.high})},
                            {"reference_density_kgm3", kReferenceDensityKgm3},
                            {"points", points}};

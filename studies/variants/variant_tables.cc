@@ -16,10 +16,6 @@ namespace {
 constexpr int kArmWidth = 14, kVariantWidth = 26, kCellWidth = 26;
 constexpr int kIdWidth = 5, kFewestWords = 24, kMostWords = 60;
 
-std::string VerdictWithLuck(const JudgedClaim& judged) {
-  return std::string(NameOf(judged.all.verdict)) + (judged.within_luck ? " (luck)" : "");
-}
-
 std::string CellText(const VariantDifference& d) {
   if (std::isnan(d.difference)) return "–";
   return fmt::format("{:+.1f}{} [{:+.1f}, {:+.1f}]", d.difference,
@@ -94,7 +90,7 @@ std::string ChangeList(const VariantStudy& study) {
     if (before.all.verdict == after.all.verdict) continue;
     text += Pad(before.claim.id, kIdWidth, Align::kLeft) +
             Pad(ClaimInWords(before.claim, kWords - 1), kWords, Align::kLeft) +
-            Pad(VerdictWithLuck(before), kVerdictWidth, Align::kLeft) + VerdictWithLuck(after) + "\n";
+            Pad(NameWithLuck(before), kVerdictWidth, Align::kLeft) + NameWithLuck(after) + "\n";
   }
   return fmt::format("\n{}{}{}{}\n{}\n{}", Pad("", kIdWidth, Align::kLeft),
                      Pad("changed verdicts", kWords, Align::kLeft), Pad("1", kVerdictWidth, Align::kLeft),
@@ -175,7 +171,7 @@ std::string VariantVerdictCsv(const VariantStudy& study) {
     csv += fmt::format("{},{},{},{},{}", claim.id, CsvField(claim.strategy), claim.metric, claim.kind,
                        CsvField(claim.comparison));
     for (const ClaimStudy& verdicts : study.verdicts)
-      csv += fmt::format(",{}", VerdictWithLuck(verdicts.claims[i]));
+      csv += fmt::format(",{}", NameWithLuck(verdicts.claims[i]));
     csv += "\n";
   }
   return csv;
