@@ -29,6 +29,7 @@ enum class Purpose : std::uint32_t {
   kAmbience = 16,          // sun, weather, season and kinds of distractors of a mission
   kRendering = 17,         // flicker, jitter and sensor noise of a sensing period
   kDataSet = 18,           // poses of the views in a training set
+  kSites = 19,             // places of a world's drawn fire sites
 };
 
 // One stream of draws. Cheap to make (no state beyond the counter); make one where it is used.

@@ -7,6 +7,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/random.h"
+#include "engine/world/plume.h"
 
 namespace ed3r {
 namespace {
@@ -15,13 +16,6 @@ constexpr int kFlameSamples = 32;
 constexpr int kSmokeSamples = 48;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kDistractorHeightM = 0.5;  // above ground, so that the ground itself does not hide it
-
-// Radical inverse: low-discrepancy points, the same for every fire.
-double RadicalInverse(int index, int base) {
-  double value = 0.0, digit = 1.0 / base;
-  for (; index > 0; index /= base, digit /= base) value += digit * (index % base);
-  return value;
-}
 
 // Area that a body element shows to a ray which looks down at it: part of its side, part of its top.
 double FacingArea(double side_m2, double top_m2, const Eigen::Vector3d& ray) {
@@ -76,32 +70,15 @@ FireView::FireView(const Scene& scene, int site) : scene_(scene) {
   ED3R_CHECK(site >= 0 && site < static_cast<int>(scene.Sites().size()), "site index");
   const FireShape& fire = scene.Fire();
   const Eigen::Vector3d base_m = scene.Sites()[static_cast<std::size_t>(site)].base_m;
-  // Flame: a cone. Its silhouette narrows towards the tip, so heights are drawn with density 2 (1 - h).
   const double flame_side_m2 = fire.flame_radius_m * fire.flame_height_m;
   const double flame_top_m2 = std::numbers::pi * fire.flame_radius_m * fire.flame_radius_m;
-  for (int i = 0; i < kFlameSamples; ++i) {
-    const double h = 1.0 - std::sqrt(1.0 - RadicalInverse(i + 1, 2));
-    const double radius_m = fire.flame_radius_m * (1.0 - h) * std::sqrt(RadicalInverse(i + 1, 3));
-    const double angle = 2.0 * std::numbers::pi * RadicalInverse(i + 1, 5);
-    flame_.push_back({base_m + Eigen::Vector3d(radius_m * std::cos(angle), radius_m * std::sin(angle),
-                                               0.5 + h * (fire.flame_height_m - 0.5)),
-                      flame_side_m2 / kFlameSamples, flame_top_m2 / kFlameSamples});
-  }
-  // Smoke: from the flame's tip to the top, widening and leaning.
+  for (const Eigen::Vector3d& point : FlamePoints(fire, base_m, kFlameSamples))
+    flame_.push_back({point, flame_side_m2 / kFlameSamples, flame_top_m2 / kFlameSamples});
   const double smoke_height_m = fire.total_height_m - fire.flame_height_m;
-  const double bottom_m = 0.5 * fire.flame_radius_m;
-  const double smoke_side_m2 = (bottom_m + fire.smoke_top_radius_m) * smoke_height_m;
+  const double smoke_side_m2 = (SmokeBottomRadiusM(fire) + fire.smoke_top_radius_m) * smoke_height_m;
   const double smoke_top_m2 = std::numbers::pi * fire.smoke_top_radius_m * fire.smoke_top_radius_m;
-  for (int i = 0; i < kSmokeSamples; ++i) {
-    const double h = RadicalInverse(i + 1, 2);
-    const double radius_m =
-        (bottom_m + h * (fire.smoke_top_radius_m - bottom_m)) * std::sqrt(RadicalInverse(i + 1, 3));
-    const double angle = 2.0 * std::numbers::pi * RadicalInverse(i + 1, 5);
-    smoke_.push_back({base_m + Eigen::Vector3d(radius_m * std::cos(angle) + h * fire.lean_x_m,
-                                               radius_m * std::sin(angle) + h * fire.lean_y_m,
-                                               fire.flame_height_m + h * smoke_height_m),
-                      smoke_side_m2 / kSmokeSamples, smoke_top_m2 / kSmokeSamples});
-  }
+  for (const Eigen::Vector3d& point : SmokePoints(fire, base_m, kSmokeSamples))
+    smoke_.push_back({point, smoke_side_m2 / kSmokeSamples, smoke_top_m2 / kSmokeSamples});
 }
 
 double FireView::VisibleShare(const Camera& camera, const std::vector<Sample>& samples, double haze_range_m,

@@ -9,6 +9,7 @@
 
 #include "engine/world/bake.h"
 #include "engine/world/forest.h"
+#include "engine/world/place_sites.h"
 #include "engine/world/scene.h"
 #include "engine/world/terrain.h"
 #include "engine/world/world_file.h"
@@ -109,6 +110,10 @@ std::shared_ptr<const Scene> Scene::Load(const std::string& world_file) {
   CheckStart(spec, parts.terrain);
   parts.start = spec.start;
   parts.fire = spec.fire;
+  if (spec.placed_sites) {
+    parts.trees = BuildForest(spec, parts);  // without clearings for sites: they are not known yet
+    parts.sites = PlaceSites(spec, parts);
+  }
   parts.trees = BuildForest(spec, parts);
   return std::make_shared<const Scene>(std::move(parts));
 }

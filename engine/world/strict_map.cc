@@ -59,41 +59,56 @@ StrictMap::StrictMap(const YAML::Node& node, std::string file, std::string path)
     : node_(node), file_(std::move(file)), path_(std::move(path)) {
   const std::string name = path_.empty() ? "" : path_.substr(0, path_.size() - 1) + ": ";
   if (!node_.IsMap())
-    FailAt(PlaceOf(node_),
+    FailAt(PlaceOf(node_, file_),
            fmt::format("{}'{}' is not allowed; allowed: keys with values", name, ValueText(node_)));
-  std::vector<std::string> seen;
   for (const auto& entry : node_) {
-    if (!entry.first.IsScalar()) FailAt(PlaceOf(entry.first), name + "a key must be a plain word");
-    if (std::find(seen.begin(), seen.end(), entry.first.Scalar()) != seen.end())
-      FailAt(PlaceOf(entry.first), Name(entry.first.Scalar()) + ": stands here twice");
-    seen.push_back(entry.first.Scalar());
+    if (!entry.first.IsScalar()) FailAt(PlaceOf(entry.first, file_), name + "a key must be a plain word");
+    const std::string& key = entry.first.Scalar();
+    if (Has(key)) FailAt(PlaceOf(entry.first, file_), Name(key) + ": stands here twice");
+    entries_.push_back({entry.first, entry.second, file_});
   }
 }
 
-TextPlace StrictMap::PlaceOf(const YAML::Node& node) const {
+TextPlace StrictMap::PlaceOf(const YAML::Node& node, const std::string& file) {
   const YAML::Mark mark = node.Mark();
-  if (mark.is_null()) return {file_};
-  return {file_, mark.line + 1, mark.column + 1};
+  if (mark.is_null()) return {file};
+  return {file, mark.line + 1, mark.column + 1};
 }
 
 std::string StrictMap::Name(std::string_view key) const { return path_ + std::string(key); }
 
-YAML::Node StrictMap::Find(std::string_view key) {
-  asked_.emplace_back(key);
-  for (const auto& entry : node_)
-    if (entry.first.Scalar() == key) return entry.second;
-  return YAML::Node(YAML::NodeType::Undefined);
+const StrictMap::Entry* StrictMap::EntryOf(std::string_view key) const {
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const Entry& entry) { return entry.key.Scalar() == key; });
+  return found == entries_.end() ? nullptr : &*found;
 }
 
-bool StrictMap::Has(std::string_view key) const {
-  return std::any_of(node_.begin(), node_.end(),
-                     [&](const auto& entry) { return entry.first.Scalar() == key; });
+const std::string& StrictMap::FileOf(std::string_view key) const {
+  const Entry* entry = EntryOf(key);
+  return entry ? entry->file : file_;
+}
+
+YAML::Node StrictMap::Find(std::string_view key) {
+  asked_.emplace_back(key);
+  const Entry* entry = EntryOf(key);
+  return entry ? entry->value : YAML::Node(YAML::NodeType::Undefined);
+}
+
+void StrictMap::TakeOver(const StrictMap& base) {
+  for (const Entry& entry : base.entries_)
+    if (!Has(entry.key.Scalar())) entries_.push_back(entry);
+}
+
+bool StrictMap::Has(std::string_view key) const { return EntryOf(key) != nullptr; }
+
+bool StrictMap::HasMap(std::string_view key) const {
+  const Entry* entry = EntryOf(key);
+  return entry && entry->value.IsMap();
 }
 
 TextPlace StrictMap::Place(std::string_view key) const {
-  for (const auto& entry : node_)
-    if (entry.first.Scalar() == key) return PlaceOf(entry.second);
-  return PlaceOf(node_);
+  const Entry* entry = EntryOf(key);
+  return entry ? PlaceOf(entry->value, entry->file) : PlaceOf(node_, file_);
 }
 
 void StrictMap::Fail(std::string_view key, const std::string& problem) const {
@@ -101,7 +116,7 @@ void StrictMap::Fail(std::string_view key, const std::string& problem) const {
 }
 
 void StrictMap::Refuse(const YAML::Node& node, std::string_view key, const std::string& allowed) const {
-  FailAt(PlaceOf(node),
+  FailAt(PlaceOf(node, FileOf(key)),
          fmt::format("{}: '{}' is not allowed; allowed: {}", Name(key), ValueText(node), allowed));
 }
 
@@ -200,7 +215,7 @@ bool StrictMap::Read(std::string_view key, std::vector<Eigen::Vector2d>& value, 
 std::optional<StrictMap> StrictMap::ReadMap(std::string_view key) {
   const YAML::Node node = Find(key);
   if (!node.IsDefined()) return std::nullopt;
-  return StrictMap(node, file_, Name(key) + ".");
+  return StrictMap(node, FileOf(key), Name(key) + ".");
 }
 
 std::optional<StrictMap> StrictMap::RequireMap(std::string_view key) {
@@ -218,7 +233,7 @@ std::vector<StrictMap> StrictMap::RequireMaps(std::string_view key, std::size_t 
     return maps;
   }
   for (const YAML::Node& item : List(node, key, min_count, max_count, "entries"))
-    maps.push_back(StrictMap(item, file_, fmt::format("{}[{}].", Name(key), maps.size() + 1)));
+    maps.push_back(StrictMap(item, FileOf(key), fmt::format("{}[{}].", Name(key), maps.size() + 1)));
   return maps;
 }
 
@@ -228,15 +243,15 @@ void StrictMap::RequireOneOf(std::string_view a, std::string_view b) {
 }
 
 void StrictMap::Finish() const {
-  for (const auto& entry : node_) {
-    const std::string& key = entry.first.Scalar();
+  for (const Entry& entry : entries_) {
+    const std::string& key = entry.key.Scalar();
     if (std::find(asked_.begin(), asked_.end(), key) != asked_.end()) continue;
     const std::string nearest = NearestWord(key, asked_);
     const std::string hint = nearest.empty() ? fmt::format("known here: {}", fmt::join(asked_, ", "))
                                              : fmt::format("did you mean {}?", Name(nearest));
-    FailAt(PlaceOf(entry.first), fmt::format("{}: unknown key; {}", Name(key), hint));
+    FailAt(PlaceOf(entry.key, entry.file), fmt::format("{}: unknown key; {}", Name(key), hint));
   }
-  if (!missing_.empty()) FailAt(PlaceOf(node_), fmt::format("{}: is missing", Name(missing_.front())));
+  if (!missing_.empty()) FailAt(PlaceOf(node_, file_), fmt::format("{}: is missing", Name(missing_.front())));
 }
 
 }  // namespace ed3r

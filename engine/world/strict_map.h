@@ -58,7 +58,12 @@ class StrictMap {
   std::optional<StrictMap> RequireMap(std::string_view key);
   std::vector<StrictMap> RequireMaps(std::string_view key, std::size_t min_count, std::size_t max_count);
 
+  // Takes over every key of another mapping that does not stand here; errors in them name their own file.
+  void TakeOver(const StrictMap& base);
+
   bool Has(std::string_view key) const;
+  bool HasMap(std::string_view key) const;  // the key is there and its value is a mapping
+  const std::string& File() const { return file_; }
 
   // Fails at the key's value, or at the mapping when the key is absent.
   [[noreturn]] void Fail(std::string_view key, const std::string& problem) const;
@@ -70,15 +75,23 @@ class StrictMap {
  private:
   StrictMap(const YAML::Node& node, std::string file, std::string path);
 
+  struct Entry {
+    YAML::Node key, value;
+    std::string file;
+  };
+
   YAML::Node Find(std::string_view key);
+  const Entry* EntryOf(std::string_view key) const;  // null when the key is absent
+  const std::string& FileOf(std::string_view key) const;
   std::string Name(std::string_view key) const;  // with the path that leads here
-  TextPlace PlaceOf(const YAML::Node& node) const;
+  static TextPlace PlaceOf(const YAML::Node& node, const std::string& file);
   double Number(const YAML::Node& node, std::string_view key, const AllowedRange& range) const;
   std::vector<YAML::Node> List(const YAML::Node& node, std::string_view key, std::size_t min_count,
                                std::size_t max_count, std::string_view of) const;
   [[noreturn]] void Refuse(const YAML::Node& node, std::string_view key, const std::string& allowed) const;
 
   YAML::Node node_;
+  std::vector<Entry> entries_;  // in the file's order, then those taken over
   std::string file_;
   std::string path_;  // "" or "terrain.grid."
   std::vector<std::string> asked_;

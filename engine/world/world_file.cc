@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <string_view>
 
 #include "engine/world/strict_map.h"
@@ -13,12 +14,32 @@ namespace ed3r {
 namespace {
 
 constexpr double kMaxSideM = 4000.0;
-constexpr double kMaxCells = 5e5;  // two triangles each; leaves half of Bullet's tree to the forest
+constexpr double kMaxCells = 5e5;     // two triangles each; leaves half of Bullet's tree to the forest
+constexpr std::size_t kMaxBases = 8;  // one on top of another
 constexpr AllowedRange kPosition{.min = 0, .max = kMaxSideM, .unit = "m"};
 
 // Files named in a world file lie relative to it.
 std::string Beside(const std::string& world_file, const std::string& named) {
   return (std::filesystem::path(world_file).parent_path() / named).string();
+}
+
+// A world file with the keys of its bases. `above` are the files that led here.
+StrictMap WithBases(const std::string& file, std::vector<std::string> above) {
+  StrictMap map = StrictMap::FromFile(file);
+  std::string base;
+  if (!map.Read("base", base)) return map;
+  const std::string base_file = Beside(file, base);
+  above.push_back(std::filesystem::weakly_canonical(file).string());
+  const std::string canonical = std::filesystem::weakly_canonical(base_file).string();
+  if (std::find(above.begin(), above.end(), canonical) != above.end())
+    map.Fail("base", fmt::format("'{}' is not allowed; it takes over this file", base));
+  if (above.size() > kMaxBases)
+    map.Fail("base",
+             fmt::format("'{}' is not allowed; at most {} bases on top of one another", base, kMaxBases));
+  if (!std::filesystem::is_regular_file(base_file))
+    map.Fail("base", fmt::format("'{}' is no file", base_file));
+  map.TakeOver(WithBases(base_file, std::move(above)));
+  return map;
 }
 
 void ReadSize(StrictMap& map, WorldSpec& spec) {
@@ -61,7 +82,7 @@ GridTerrainSpec ReadGrid(StrictMap& map, const WorldSpec& world) {
   map.Read("extent_m", spec.extent_m, {.min = 1, .max = 1e6, .unit = "m"});
   map.Read("height_scale", spec.height_scale, {.min = 0.001, .max = 1000});
   map.Finish();
-  spec.file = Beside(world.file, spec.file);
+  spec.file = Beside(map.File(), spec.file);
   spec.file_place = map.Place("file");
   spec.extent_place = map.Has("extent_m")   ? map.Place("extent_m")
                       : map.Has("offset_m") ? map.Place("offset_m")
@@ -106,7 +127,7 @@ GeneratedForestSpec ReadGeneratedForest(StrictMap& map) {
   return spec;
 }
 
-StemMapSpec ReadStemMap(StrictMap& map, const std::string& world_file) {
+StemMapSpec ReadStemMap(StrictMap& map) {
   StemMapSpec spec;
   Eigen::Vector2d extent_m;
   map.Require("file", spec.file);
@@ -117,12 +138,12 @@ StemMapSpec ReadStemMap(StrictMap& map, const std::string& world_file) {
   map.Read("min_height_m", spec.min_height_m, {.min = 0, .max = 120, .unit = "m"});
   map.Read("keep", spec.keep, {.min = 0, .max = 1});
   map.Finish();
-  spec.file = Beside(world_file, spec.file);
+  spec.file = Beside(map.File(), spec.file);
   spec.file_place = map.Place("file");
   return spec;
 }
 
-ForestSpec ReadForest(StrictMap& map, const std::string& world_file) {
+ForestSpec ReadForest(StrictMap& map) {
   ForestSpec spec;
   constexpr AllowedRange kClear{.min = 0, .max = 200, .unit = "m"};
   map.RequireOneOf("generated", "stem_map");
@@ -131,17 +152,30 @@ ForestSpec ReadForest(StrictMap& map, const std::string& world_file) {
   map.Read("station_clear_m", spec.station_clear_m, kClear);
   map.Read("start_clear_m", spec.start_clear_m, kClear);
   if (auto generated = map.ReadMap("generated")) spec.generated = ReadGeneratedForest(*generated);
-  if (auto stem_map = map.ReadMap("stem_map")) spec.stem_map = ReadStemMap(*stem_map, world_file);
+  if (auto stem_map = map.ReadMap("stem_map")) spec.stem_map = ReadStemMap(*stem_map);
   map.Finish();
   return spec;
 }
 
+void ReadFromStart(StrictMap& map, PointSpec& point) {
+  double distance_m = 0.0, bearing_deg = 0.0;
+  map.Require("distance_m", distance_m, AllowedRange{.min = 0, .max = 2 * kMaxSideM, .unit = "m"});
+  map.Require("bearing_deg", bearing_deg, AllowedRange{.min = -360, .max = 360, .unit = "degrees"});
+  map.Finish();
+  const double bearing = bearing_deg * std::numbers::pi / 180.0;
+  point.at_m = distance_m * Eigen::Vector2d(std::sin(bearing), std::cos(bearing));
+  point.from_start = true;
+}
+
 void ReadPosition(StrictMap& map, PointSpec& point) {
+  map.RequireOneOf("at_m", "from_start");
   std::vector<double> at;
-  map.Require("at_m", at, std::size_t{2}, std::size_t{3}, AllowedRange{.min = -1e6, .max = 1e6, .unit = "m"});
-  if (at.size() >= 2) point.at_m = {at[0], at[1]};
+  if (map.Read("at_m", at, std::size_t{2}, std::size_t{3},
+               AllowedRange{.min = -1e6, .max = 1e6, .unit = "m"}))
+    point.at_m = {at[0], at[1]};
   if (at.size() == 3) point.z_m = at[2];
-  point.place = map.Place("at_m");
+  if (auto from_start = map.ReadMap("from_start")) ReadFromStart(*from_start, point);
+  point.place = map.Place(point.from_start ? "from_start" : "at_m");
 }
 
 std::vector<PointSpec> ReadPoints(StrictMap& world, std::string_view key, bool stations) {
@@ -163,6 +197,35 @@ std::vector<PointSpec> ReadPoints(StrictMap& world, std::string_view key, bool s
     points.push_back(std::move(point));
   }
   return points;
+}
+
+PlacedSitesSpec ReadPlaced(StrictMap& map) {
+  PlacedSitesSpec spec;
+  constexpr AllowedRange kCount{.min = 0, .max = 500};
+  map.Read("seed", spec.seed);
+  map.Require("known", spec.known, kCount);
+  map.Require("unseen", spec.unseen, kCount);
+  map.Require("distance_m", spec.distance_m, kPosition);
+  map.Read("in_sight", spec.in_sight, {.min = 0, .max = 1});
+  map.Read("apart_m", spec.apart_m, {.min = 0, .max = 1000, .unit = "m"});
+  map.Finish();
+  CheckOrder(map, "distance_m", spec.distance_m);
+  CheckOrder(map, "in_sight", spec.in_sight);
+  if (spec.known + spec.unseen == 0) map.Fail("known", "'0' is not allowed together with unseen: 0");
+  return spec;
+}
+
+void ReadSites(StrictMap& map, WorldSpec& spec) {
+  if (!map.HasMap("sites")) {
+    spec.sites = ReadPoints(map, "sites", /*stations=*/false);
+    return;
+  }
+  StrictMap sites = *map.ReadMap("sites");
+  if (auto placed = sites.RequireMap("placed")) {
+    spec.placed_sites = ReadPlaced(*placed);
+    spec.placed_sites->place = sites.Place("placed");
+  }
+  sites.Finish();
 }
 
 void ReadStart(StrictMap& map, WorldSpec& spec) {
@@ -200,7 +263,7 @@ void ReadFire(StrictMap& map, FireShape& fire) {
 }  // namespace
 
 WorldSpec ReadWorldFile(const std::string& file) {
-  StrictMap map = StrictMap::FromFile(file);
+  StrictMap map = WithBases(file, {});
   WorldSpec spec;
   spec.file = file;
   map.Require("name", spec.name);
@@ -208,12 +271,15 @@ WorldSpec ReadWorldFile(const std::string& file) {
   ReadSize(map, spec);
   std::optional<StrictMap> terrain = map.RequireMap("terrain");
   if (auto forest = map.ReadMap("forest")) {
-    spec.forest = ReadForest(*forest, file);
+    spec.forest = ReadForest(*forest);
     spec.forest->place = map.Place("forest");
   }
-  spec.sites = ReadPoints(map, "sites", /*stations=*/false);
+  ReadSites(map, spec);
   spec.base_stations = ReadPoints(map, "base_stations", /*stations=*/true);
   if (auto start = map.RequireMap("start")) ReadStart(*start, spec);
+  for (std::vector<PointSpec>* points : {&spec.sites, &spec.base_stations})
+    for (PointSpec& point : *points)
+      if (point.from_start) point.at_m += Eigen::Vector2d(spec.start.x_m, spec.start.y_m);
   if (auto fire = map.ReadMap("fire")) ReadFire(*fire, spec.fire);
   map.Finish();
   ReadTerrain(*terrain, spec);  // after Finish: the grid of cells needs the area's size

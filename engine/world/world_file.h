@@ -1,6 +1,9 @@
 // World files (YAML): what a scene is made of, as its author wrote it. Reading checks keys, types and ranges;
 // Scene::Load then builds it and checks what depends on the ground. Lengths in metres, positions from the
 // area's south-west corner, east first.
+//
+// `base: other.yaml` takes over every top-level key of another world file; those that stand here replace them
+// whole. A file that is named in a base lies relative to that base.
 #pragma once
 
 #include <Eigen/Core>
@@ -76,13 +79,28 @@ struct ForestSpec {
   TextPlace place;
 };
 
-// A named point on the ground, or at a height of its own.
+// A named point on the ground, or at a height of its own. Its place is written as at_m, or from_start
+// {distance_m, bearing_deg}: on the ground, seen from the start's centre, bearing clockwise from north.
 struct PointSpec {
   std::string name;
   Eigen::Vector2d at_m = Eigen::Vector2d::Zero();
+  bool from_start = false;
   std::optional<double> z_m;
   double above_ground_m = 0.0;  // without z_m
   bool known = false;
+  TextPlace place;
+};
+
+// Sites that are drawn from a seed instead of written down. Each lies in the ring distance_m around the start's
+// centre, uniformly by area, inside the area, apart_m from the others, and its `sight_around` (measures.h)
+// lies in in_sight: the narrower that is, the more alike the sites are. Their order goes around the start.
+struct PlacedSitesSpec {
+  std::uint64_t seed = 0;
+  int known = 0;
+  int unseen = 0;
+  Eigen::Vector2d distance_m = Eigen::Vector2d::Zero();
+  Eigen::Vector2d in_sight{0.0, 1.0};
+  double apart_m = 40.0;
   TextPlace place;
 };
 
@@ -97,6 +115,7 @@ struct WorldSpec {
   std::optional<GridTerrainSpec> grid;
   std::optional<ForestSpec> forest;  // none: bare ground
   std::vector<PointSpec> sites;
+  std::optional<PlacedSitesSpec> placed_sites;  // then `sites` is empty
   std::vector<PointSpec> base_stations;
   StartArea start;
   TextPlace start_place;

@@ -80,7 +80,7 @@ TEST_F(BrokenFiles, Keys) {
             "w.yaml:10:5: forest.generated.oak_share: unknown key; known here: spacing_m, cover, "
             "clearing_size_m, height_m, crown_radius_m");
   EXPECT_EQ(Message(With("start:", "begin:")),
-            "w.yaml:16:1: begin: unknown key; known here: name, seed, size_m, terrain, forest, sites, "
+            "w.yaml:16:1: begin: unknown key; known here: base, name, seed, size_m, terrain, forest, sites, "
             "base_stations, start, fire");
   EXPECT_EQ(Message(With("name: small\n", "")), "w.yaml:1:1: name: is missing");
   EXPECT_EQ(Message(With("name: small", "name: small\nname: large")), "w.yaml:2:1: name: stands here twice");
