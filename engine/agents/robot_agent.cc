@@ -12,7 +12,11 @@ namespace {
 
 constexpr std::array kExecutions = {Execution::kOffload, Execution::kFull, Execution::kQuantized};
 
-Execution DrawAllowed(const AllowedExecutions& allowed, Stream& stream) {
+Execution DrawAllowed(AllowedExecutions allowed, RandomExecution random, Stream& stream) {
+  if (random == RandomExecution::kCoin && allowed.offload && allowed.Count() > 1) {
+    if (stream.Uniform() < 0.5) return Execution::kOffload;
+    allowed.offload = false;
+  }
   std::uint32_t index = stream.Below(static_cast<std::uint32_t>(allowed.Count()));
   for (const Execution execution : kExecutions) {
     if (allowed.Allows(execution) && index-- == 0) return execution;
@@ -33,11 +37,12 @@ ExecutionDecision RobotAgent::ChooseExecution(const RobotView& view, double epsi
   Stream stream(context_.seed, context_.scenario, Purpose::kExecution, timestep);
   if (context_.strategy.execution == ExecutionPolicy::kRules)
     return DecideByRules(context_.config.rbs, view, stream);
-  if (allowed.Count() == 1) return {.execution = DrawAllowed(allowed, stream)};
+  const RandomExecution random = context_.config.agents.random_execution;
+  if (allowed.Count() == 1) return {.execution = DrawAllowed(allowed, random, stream)};
   const bool explores =
       context_.strategy.execution == ExecutionPolicy::kRandom ||
       Stream(context_.seed, context_.scenario, Purpose::kRobotExploration, timestep).Uniform() < epsilon;
-  if (explores) return {.execution = DrawAllowed(allowed, stream), .random = true};
+  if (explores) return {.execution = DrawAllowed(allowed, random, stream), .random = true};
 
   const std::array<double, 3> rewards = PredictAll(view);
   ExecutionDecision decision;

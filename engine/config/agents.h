@@ -31,6 +31,14 @@ struct EnumNames<TiltCommand> {
                                                      {TiltCommand::kRelative, "relative"}};
 };
 
+// Random choices of where to detect: offload, Full and Quantized alike, or a coin between offloading and on board first.
+enum class RandomExecution { kEqual, kCoin };
+template <>
+struct EnumNames<RandomExecution> {
+  static constexpr EnumName<RandomExecution> kNames[] = {{RandomExecution::kEqual, "equal"},
+                                                         {RandomExecution::kCoin, "coin"}};
+};
+
 struct AgentsConfig {
   double eta_min = 0.75;
   double eta_int = 0.20;
@@ -53,6 +61,7 @@ struct AgentsConfig {
   double epsilon_min = 0.01;
   double epsilon_decay = 0.95;
   ElseBranch else_branch = ElseBranch::kDecayed;
+  RandomExecution random_execution = RandomExecution::kEqual;
   double region_size_m = 60.0;
   int region_visits = 20;
   bool early_completion = true;
@@ -135,6 +144,10 @@ struct AgentsConfig {
            .meaning = "decay of epsilon per mission"});
     visit("else_branch", self.else_branch,
           {.source = "R20", .meaning = "epsilon in normal operation: decayed, or the Algorithm's 0"});
+    visit("random_execution", self.random_execution,
+          {.source = "R36",
+           .meaning = "random choices of the robot: offload, Full, Quantized alike, or a coin between "
+                      "offloading and on board first"});
     visit("region_size_m", self.region_size_m,
           {.unit = "m", .min = 5, .max = 500, .source = kTable, .meaning = "edge of a cubic region, crs"});
     visit("region_visits", self.region_visits,

@@ -2,12 +2,13 @@
 //
 // The fast tier ("profile") turns what the camera could see into confidences of the frames of one sensing
 // period:
-//   signal  s   = w_fire a_fire + w_smoke a_smoke + sum of distractors          (a: visible share of the
-//   image) logit   z_i = slope log10(s / half_signal) + N(0, view_sigma) per timestep + N(0, frame_sigma) per
-//   frame confidence of frame i = ceiling / (1 + exp(-z_i)), and 0 below frame_threshold.
-// The Full and the Quantized model differ only in half_signal, slope, ceiling and the two sigmas. A tier made
-// of rendered pixels can fit them; the defaults are calibrated on the RBS row of the paper alone
-// (sweeps/calibration, scripts/calibrate.py).
+//   signal      s   = the stronger of   w_fire a_fire + w_smoke a_smoke   and   gain w_distractor a_distractor
+//   logit       z_i = slope log10(s / half_signal) + N(0, view_sigma) per view + N(0, frame_sigma) per frame
+//   confidence  of frame i = ceiling / (1 + exp(-z_i)), and 0 below frame_threshold.
+// a: visible share of the image; a_distractor: that of the one distractor which misleads most, times
+// 1 / (1 + exp((distractor_tilt_deg - steepness) / distractor_tilt_width_deg)) for how steeply it is seen. The models
+// differ in what ResponseConfig holds. A tier made of rendered pixels can fit them; the defaults are calibrated on what the
+// paper says of its random walk alone (sweeps/calibration, scripts/calibrate.py).
 #pragma once
 
 #include "engine/config/detector.h"
@@ -23,9 +24,17 @@ struct EnumNames<PerceptionTier> {
                                                         {PerceptionTier::kPixels, "pixels"}};
 };
 
-// On the RBS row, with the values frozen in sweeps/calibration/frozen.yaml.
+// With the values frozen in sweeps/calibration/frozen.yaml.
 inline constexpr std::string_view kCalibratedSource = "calibrated";
 inline constexpr std::string_view kAssumedSource = "assumed";
+
+// The fluctuation of a view while the robot hovers over it: part of the view, or drawn anew in every timestep.
+enum class ViewNoise { kKept, kRedrawn };
+template <>
+struct EnumNames<ViewNoise> {
+  static constexpr EnumName<ViewNoise> kNames[] = {{ViewNoise::kKept, "kept"},
+                                                   {ViewNoise::kRedrawn, "redrawn"}};
+};
 
 // Response of one detection model.
 struct ResponseConfig {
@@ -34,6 +43,7 @@ struct ResponseConfig {
   double ceiling = 0.956;
   double view_sigma = 0.5;
   double frame_sigma = 0.3;
+  double distractor_gain = 1.0;
 
   template <class Self, class Visitor>
   static void Describe(Self& self, Visitor&& visit) {
@@ -55,13 +65,18 @@ struct ResponseConfig {
            .min = 0,
            .max = 10,
            .source = kAssumedSource,
-           .meaning = "fluctuation from timestep to timestep"});
+           .meaning = "fluctuation from view to view"});
     visit("frame_sigma", self.frame_sigma,
           {.unit = "logit",
            .min = 0,
            .max = 10,
            .source = kAssumedSource,
            .meaning = "fluctuation from frame to frame"});
+    visit("distractor_gain", self.distractor_gain,
+          {.min = 0,
+           .max = 100,
+           .source = "R34",
+           .meaning = "how much a distractor excites this model, times distractor_weight"});
   }
 };
 
@@ -74,7 +89,10 @@ struct PerceptionConfig {
   double distractors_per_km2 = 178.0;
   double distractor_radius_m = 2.5;
   double distractor_weight = 0.5;
+  double distractor_radius_sigma = 0.3;
   double distractor_tilt_deg = 42.3;
+  double distractor_tilt_width_deg = 5.0;
+  ViewNoise view_noise = ViewNoise::kKept;
   ResponseConfig full;
   ResponseConfig quantized{
       .half_signal = 0.000727, .slope = 2.45, .ceiling = 0.916, .view_sigma = 0.7, .frame_sigma = 0.6};
@@ -104,6 +122,11 @@ struct PerceptionConfig {
            .meaning = "sources of false confidence, drawn per mission"});
     visit("distractor_radius_m", self.distractor_radius_m,
           {.unit = "m", .min = 0.1, .max = 20, .source = "R34", .meaning = "mean radius of a distractor"});
+    visit("distractor_radius_sigma", self.distractor_radius_sigma,
+          {.min = 0,
+           .max = 2,
+           .source = "R34",
+           .meaning = "spread of the logarithm of distractors' radii: the tail of large ones"});
     visit("distractor_weight", self.distractor_weight,
           {.min = 0, .max = 10, .source = "R34", .meaning = "weight of a visible distractor"});
     visit("distractor_tilt_deg", self.distractor_tilt_deg,
@@ -111,7 +134,12 @@ struct PerceptionConfig {
            .min = 0,
            .max = 90,
            .source = "R34, calibrated",
-           .meaning = "camera tilt above which distractors mislead"});
+           .meaning =
+               "steepness below the horizon at which distractors mislead half as much as straight down"});
+    visit("distractor_tilt_width_deg", self.distractor_tilt_width_deg,
+          {.unit = "deg", .min = 0.1, .max = 45, .source = "R34", .meaning = "how gradually that sets in"});
+    visit("view_noise", self.view_noise,
+          {.source = "R34", .meaning = "fluctuation of a view that the robot hovers over"});
     visit.Nested("full", self.full);
     visit.Nested("quantized", self.quantized);
     visit.Nested("render", self.render);

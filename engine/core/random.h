@@ -29,7 +29,8 @@ enum class Purpose : std::uint32_t {
   kAmbience = 16,          // sun, weather, season and kinds of distractors of a mission
   kRendering = 17,         // flicker, jitter and sensor noise of a sensing period
   kDataSet = 18,           // poses of the views in a training set
-  kSites = 19,             // places of a world's drawn fire sites
+  kView = 19,              // fluctuation of the confidence from view to view
+  kSites = 20,             // places of a world's drawn fire sites
 };
 
 // One stream of draws. Cheap to make (no state beyond the counter); make one where it is used.

@@ -90,6 +90,7 @@ class Mission {
   const std::unique_ptr<Sensor> sensor_;
   double battery_j_;  // beta_k
   double distance_m_ = 0.0;
+  std::uint32_t view_begin_ = 1;  // the timestep in which the robot came to where it is
   std::vector<TimestepRecord> steps_;
 };
 
@@ -103,6 +104,7 @@ MissionRecord Mission::Fly() {
         controller_.ChooseMotion(rc_view, k, CandidatesAt(k));  // stage 1, at the RC
     if (motion.complete) return Close(OutcomeOfCompletion());
     const FlownMove move = flight_.Execute(motion.command, k);
+    if (!motion.command.hover) view_begin_ = k;
 
     const Arrival arrival = Arrive(k);
     const RobotView robot_view = OnboardView(arrival);
@@ -165,10 +167,12 @@ void Mission::Detect(const ExecutionDecision& execution, TimestepRecord& step) c
   // The RC runs the Full model only.
   const DetectionModel model =
       execution.execution == Execution::kQuantized ? DetectionModel::kQuantized : DetectionModel::kFull;
-  const Detection seen = sensor_->Sense(flight_.CurrentPose(), model, static_cast<std::uint32_t>(step.k));
+  const Detection seen =
+      sensor_->Sense(flight_.CurrentPose(), model, static_cast<std::uint32_t>(step.k), view_begin_);
   step.confidence_mean = seen.score.mean;
   step.confidence_sd = seen.score.standard_deviation;
   step.scs = seen.score.scs;
+  step.fire_only_scs = seen.fire_only_scs;
   step.fire_share = seen.fire_share;
   step.smoke_share = seen.smoke_share;
   step.fire_in_view = seen.fire_in_view ? 1 : 0;
@@ -217,12 +221,13 @@ void Mission::Probe(std::uint32_t k, const RcView& rc_view, const MotionDecision
   task_.probe->robot_rewards = robot_.PredictAll(robot_view);
 }
 
-// A completion is false when no fire was in view at any of the detections that completed it (R16).
+// A completion is true when flame and smoke in view alone would have reached it (R16).
 Outcome Mission::OutcomeOfCompletion() const {
   const auto patience = static_cast<std::size_t>(config_.agents.completion_patience);
   ED3R_CHECK(steps_.size() >= patience, "completed before the patience ran out");
-  const bool real = std::any_of(steps_.end() - static_cast<std::ptrdiff_t>(patience), steps_.end(),
-                                [](const TimestepRecord& step) { return step.fire_in_view != 0; });
+  const bool real =
+      std::all_of(steps_.end() - static_cast<std::ptrdiff_t>(patience), steps_.end(),
+                  [&](const TimestepRecord& step) { return step.fire_only_scs >= config_.agents.eta_min; });
   return real ? Outcome::kSuccess : Outcome::kFalsePositive;
 }
 

@@ -37,6 +37,7 @@ struct TimestepRecord {
   std::int64_t execution_random = 0;
   // Detection
   double confidence_mean = 0, confidence_sd = 0, scs = 0;
+  double fire_only_scs = 0;  // what flame and smoke in view would have reached without distractors (R16)
   double fire_share = 0, smoke_share = 0;  // visible share of the image
   std::int64_t fire_in_view = 0;
   // Times
@@ -91,7 +92,8 @@ void TimestepRecord::Describe(Self& s, Visitor&& visit) {
       visit("rate_bps", s.rate_bps);
   visit("transmit_power_w", s.transmit_power_w), visit("execution", s.execution);
   visit("execution_random", s.execution_random), visit("confidence_mean", s.confidence_mean);
-  visit("confidence_sd", s.confidence_sd), visit("scs", s.scs), visit("fire_share", s.fire_share);
+  visit("confidence_sd", s.confidence_sd), visit("scs", s.scs), visit("fire_only_scs", s.fire_only_scs);
+  visit("fire_share", s.fire_share);
   visit("smoke_share", s.smoke_share), visit("fire_in_view", s.fire_in_view),
       visit("horizontal_s", s.horizontal_s);
   visit("ascent_s", s.ascent_s), visit("descent_s", s.descent_s), visit("turning_s", s.turning_s);

@@ -1,5 +1,6 @@
 #include "engine/perception/detector.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -8,15 +9,16 @@
 namespace ed3r {
 
 Score DetectFromProfile(const View& view, const PerceptionConfig& perception, DetectionModel model,
-                        int frames, std::uint64_t seed, std::uint32_t scenario, std::uint32_t timestep) {
-  const double signal = perception.fire_weight * view.fire_share +
-                        perception.smoke_weight * view.smoke_share +
-                        perception.distractor_weight * view.distractor_share;
-  if (signal <= 0.0) return {};
+                        int frames, const LookDraws& draws) {
   const ResponseConfig& response = model == DetectionModel::kFull ? perception.full : perception.quantized;
-  Stream stream(seed, scenario, Purpose::kFrames, timestep);
+  const double fire = perception.fire_weight * view.fire_share + perception.smoke_weight * view.smoke_share;
+  const double distractor = response.distractor_gain * perception.distractor_weight * view.distractor_share;
+  const double signal = std::max(fire, distractor);
+  if (signal <= 0.0) return {};
+  const double fluctuation = Stream(draws.seed, draws.scenario, Purpose::kView, draws.view).Normal();
   const double logit =
-      response.slope * std::log10(signal / response.half_signal) + response.view_sigma * stream.Normal();
+      response.slope * std::log10(signal / response.half_signal) + response.view_sigma * fluctuation;
+  Stream stream(draws.seed, draws.scenario, Purpose::kFrames, draws.timestep);
   std::vector<double> confidences(static_cast<std::size_t>(frames));
   for (double& confidence : confidences)
     confidence = response.ceiling / (1.0 + std::exp(-(logit + response.frame_sigma * stream.Normal())));

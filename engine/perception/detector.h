@@ -11,8 +11,15 @@
 
 namespace ed3r {
 
-// Keyed draws: both models meet the same fluctuation at a timestep, so that arms differ by the model alone.
+// Keys of a look's draws: both models meet the same fluctuation, so that arms differ by the model alone.
+struct LookDraws {
+  std::uint64_t seed = 0;
+  std::uint32_t scenario = 0;
+  std::uint32_t timestep = 1;  // of the frames
+  std::uint32_t view = 1;      // the timestep whose fluctuation the view has
+};
+
 Score DetectFromProfile(const View& view, const PerceptionConfig& perception, DetectionModel model,
-                        int frames, std::uint64_t seed, std::uint32_t scenario, std::uint32_t timestep);
+                        int frames, const LookDraws& draws);
 
 }  // namespace ed3r

@@ -16,9 +16,10 @@ enum class DetectionModel { kFull, kQuantized };
 // What one sensing period told, and the truth about it.
 struct Detection {
   Score score;
-  double fire_share = 0.0;    // visible flame as a share of the image
-  double smoke_share = 0.0;   // visible smoke likewise
-  bool fire_in_view = false;  // R16
+  double fire_only_scs = 0.0;  // what flame and smoke in view would have reached without distractors (R16)
+  double fire_share = 0.0;     // visible flame as a share of the image
+  double smoke_share = 0.0;    // visible smoke likewise
+  bool fire_in_view = false;   // R16
 };
 
 // Threads: one mission, one thread. Deterministic in what it was made from and the arguments: a timestep's draws do not
@@ -26,7 +27,9 @@ struct Detection {
 class Sensor {
  public:
   virtual ~Sensor() = default;
-  virtual Detection Sense(const Pose& pose, DetectionModel model, std::uint32_t timestep) const = 0;
+  // `view`: the timestep in which the robot came to this pose; later ones hover over the same view.
+  virtual Detection Sense(const Pose& pose, DetectionModel model, std::uint32_t timestep,
+                          std::uint32_t view) const = 0;
 };
 
 // The fire that burns in a mission, and the keys of its draws.

@@ -24,6 +24,14 @@ double FacingArea(double side_m2, double top_m2, const Eigen::Vector3d& ray) {
   return side_m2 * std::sqrt(std::max(0.0, 1.0 - down * down)) + top_m2 * down;
 }
 
+// How much of a distractor's signal is left when it is seen along a ray (R34): nearly nothing from the side, all of it
+// straight from above.
+double Misleading(const Eigen::Vector3d& ray, const PerceptionConfig& perception) {
+  const double steepness_deg = std::asin(std::clamp(-ray.z() / ray.norm(), -1.0, 1.0)) / kDegree;
+  return 1.0 / (1.0 + std::exp((perception.distractor_tilt_deg - steepness_deg) /
+                               perception.distractor_tilt_width_deg));
+}
+
 }  // namespace
 
 std::vector<Distractor> DrawDistractors(const Scene& scene, const PerceptionConfig& perception,
@@ -37,7 +45,10 @@ std::vector<Distractor> DrawDistractors(const Scene& scene, const PerceptionConf
   for (int i = 0; i < count; ++i) {
     const double x_m = stream.Uniform(0.0, size_m.x());
     const double y_m = stream.Uniform(0.0, size_m.y());
-    const double radius_m = perception.distractor_radius_m * stream.Uniform(0.5, 1.5);
+    // Log-normal with the given mean.
+    const double sigma = perception.distractor_radius_sigma;
+    const double radius_m =
+        perception.distractor_radius_m * std::exp(sigma * stream.Normal() - 0.5 * sigma * sigma);
     distractors.push_back({{x_m, y_m, scene.Ground().HeightAt(x_m, y_m) + kDistractorHeightM}, radius_m});
   }
   return distractors;
@@ -105,16 +116,14 @@ View FireView::Look(const Pose& pose, const SensingConfig& sensing, const Percep
   view.fire_in_view = visible > 0;
   for (const Distractor& distractor : distractors) {
     const Eigen::Vector3d ray = distractor.position_m - camera.PositionM();
-    const double steepness_deg = std::asin(std::clamp(-ray.z() / ray.norm(), -1.0, 1.0)) / kDegree;
-    const double misleading =
-        (steepness_deg - perception.distractor_tilt_deg) / (90.0 - perception.distractor_tilt_deg + 1e-9);
-    if (misleading <= 0.0) continue;
     const double disc_m2 = std::numbers::pi * distractor.radius_m * distractor.radius_m;
-    const double share = camera.ShareOf(distractor.position_m, FacingArea(0.0, disc_m2, ray));
-    if (share <= 0.0 || scene_.Geometry().Occluded(camera.PositionM(), distractor.position_m)) continue;
-    view.distractor_share += share * misleading * std::exp(-ray.norm() / perception.haze_range_m);
+    const double share = std::min(1.0, camera.ShareOf(distractor.position_m, FacingArea(0.0, disc_m2, ray))) *
+                         Misleading(ray, perception) * std::exp(-ray.norm() / perception.haze_range_m);
+    if (share <= view.distractor_share ||
+        scene_.Geometry().Occluded(camera.PositionM(), distractor.position_m))
+      continue;
+    view.distractor_share = share;
   }
-  view.distractor_share = std::min(view.distractor_share, 1.0);
   return view;
 }
 

@@ -28,7 +28,7 @@ std::vector<Distractor> DrawDistractors(const Scene& scene, const PerceptionConf
 struct View {
   double fire_share = 0.0;        // visible flame as a share of the image, after haze
   double smoke_share = 0.0;       // visible smoke likewise
-  double distractor_share = 0.0;  // visible distractors likewise, weighted by how steeply they are seen
+  double distractor_share = 0.0;  // of the distractor that misleads most, weighted by how steeply it is seen
   double visible_fraction = 0.0;  // of all flame and smoke samples
   bool fire_in_view = false;      // some flame or smoke in frame and in line of sight: the ground truth (R16)
 };

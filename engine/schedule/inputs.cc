@@ -2,11 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <vector>
+
 #include "engine/agents/strategy.h"
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
 #include "engine/mission/scenario.h"
 #include "engine/robot/airframe.h"
+#include "engine/schedule/parallel_for.h"
+#include "engine/schedule/scheduler.h"
 #include "engine/schedule/training_stage.h"
 
 namespace ed3r {
@@ -25,16 +32,41 @@ std::string PixelKey(const Config& config) {
   return config.mission.world + "\n" + CanonicalText(detector);
 }
 
+// Every world of the plan, loaded side by side. The error is that of the first world that has one.
+std::map<std::string, std::shared_ptr<const Scene>> LoadScenes(const SweepPlan& plan) {
+  std::vector<std::string> files;
+  for (const Stage& stage : plan.stages)
+    for (const Arm& arm : stage.arms)
+      if (std::find(files.begin(), files.end(), arm.config.mission.world) == files.end())
+        files.push_back(arm.config.mission.world);
+  std::vector<std::shared_ptr<const Scene>> scenes(files.size());
+  std::vector<std::exception_ptr> errors(files.size());
+  const int threads = std::min(ThreadsFor(0), static_cast<int>(files.size()));
+  ParallelFor(std::max(threads, 1), static_cast<std::int64_t>(files.size()), [&](std::int64_t i) {
+    const auto at = static_cast<std::size_t>(i);
+    try {
+      scenes[at] = Scene::Load(files[at]);
+    } catch (...) {
+      errors[at] = std::current_exception();
+    }
+  });
+  std::map<std::string, std::shared_ptr<const Scene>> loaded;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (errors[i]) std::rethrow_exception(errors[i]);
+    loaded[files[i]] = scenes[i];
+  }
+  return loaded;
+}
+
 }  // namespace
 
 Inputs::Inputs(const SweepPlan& plan) {
   CheckTraining(plan);
+  scenes_ = LoadScenes(plan);
   for (const Stage& stage : plan.stages) {
     for (const Arm& arm : stage.arms) {
-      std::shared_ptr<const Scene>& scene = scenes_[arm.config.mission.world];
-      if (!scene) scene = Scene::Load(arm.config.mission.world);
       try {
-        CheckArm(arm, *scene, plan.seed);
+        CheckArm(arm, SceneOf(arm.config), plan.seed);
         AddPixels(arm.config);
       } catch (const UserError& error) {
         throw UserError(fmt::format("{}: arm {}: {}", plan.file, arm.name, error.what()));

@@ -123,7 +123,8 @@ Solution BestOfStarts(std::span<const PeriodLook> looks, const Given& full, cons
   Solution best;
   for (const double slope : {3.0, 8.0}) {
     for (const double sigma : {0.7, 2.0}) {
-      Solution solution{profile::WeightsOf(start), profile::ResponseOf(start.full, start.fire_weight),
+      Solution solution{profile::WeightsOf(start, start.full),
+                        profile::ResponseOf(start.full, start.fire_weight),
                         profile::ResponseOf(start.quantized, start.fire_weight)};
       for (Response* response : {&solution.full, &solution.quantized}) {
         (*response)[1] = slope;
@@ -140,8 +141,9 @@ Solution BestOfStarts(std::span<const PeriodLook> looks, const Given& full, cons
 
 namespace profile {
 
-Weights WeightsOf(const PerceptionConfig& p) {
-  return {std::log(p.smoke_weight / p.fire_weight), std::log(p.distractor_weight / p.fire_weight)};
+Weights WeightsOf(const PerceptionConfig& p, const ResponseConfig& r) {
+  return {std::log(p.smoke_weight / p.fire_weight),
+          std::log(r.distractor_gain * p.distractor_weight / p.fire_weight)};
 }
 
 Response ResponseOf(const ResponseConfig& r, double fire_weight) {
@@ -174,16 +176,16 @@ ProfileFit FitProfile(std::span<const PeriodLook> looks, const PerceptionConfig&
 }
 
 double ExpectedConfidence(const PeriodLook& look, const PerceptionConfig& perception) {
-  const Weights weights = profile::WeightsOf(perception);
   const ResponseConfig& r = look.quantized ? perception.quantized : perception.full;
+  const Weights weights = profile::WeightsOf(perception, r);
   const Response response = profile::ResponseOf(r, perception.fire_weight);
   return profile::ExpectedMean(look, Given{perception.frame_threshold, r.frame_sigma}, weights.data(),
                                response.data());
 }
 
 double AlarmProbability(const PeriodLook& look, const PerceptionConfig& perception) {
-  const Weights weights = profile::WeightsOf(perception);
   const ResponseConfig& r = look.quantized ? perception.quantized : perception.full;
+  const Weights weights = profile::WeightsOf(perception, r);
   const Response response = profile::ResponseOf(r, perception.fire_weight);
   return profile::ProbabilityAbove(kReliable, look, Given{perception.frame_threshold, r.frame_sigma},
                                    weights.data(), response.data());

@@ -3,7 +3,7 @@
 //
 // For a sensing period with visible shares a (engine/perception/view.h) the profile expects the mean confidence
 //   E = integral over z' from logit(t / ceiling) of  ceiling / (1 + exp(-z'))  phi((z' - z) / sigma) / sigma
-//   z = slope log10(s / half_signal),  s = a_fire + w_smoke a_smoke + w_distractor a_distractor,
+//   z = slope log10(s / half_signal),  s = the stronger of a_fire + w_smoke a_smoke and w_distractor a_distractor,
 //   sigma^2 = view_sigma^2 + frame_sigma^2,  t = frame_threshold: frames below it count as 0 (R33).
 // Ceres minimises the squared differences to the observed means and to how often a period is reliable (kReliable), so that
 // the fitted profile is right on average: confidences are bounded, and those far off are no errors but views that the

@@ -8,8 +8,8 @@ namespace ed3r {
 namespace {
 
 double SignalOf(const PeriodLook& look, const ProfileFit& fit) {
-  return look.fire_share + fit.smoke_weight * look.smoke_share +
-         fit.distractor_weight * look.distractor_share;
+  return std::max(look.fire_share + fit.smoke_weight * look.smoke_share,
+                  fit.distractor_weight * look.distractor_share);
 }
 
 double Percent(int part, int whole) { return whole > 0 ? 100.0 * part / whole : std::nan(""); }

@@ -24,7 +24,9 @@ struct Given {
 template <class T>
 T SignalOf(const PeriodLook& look, const T* weights) {
   using std::exp;
-  return look.fire_share + exp(weights[0]) * look.smoke_share + exp(weights[1]) * look.distractor_share;
+  const T fire = look.fire_share + exp(weights[0]) * look.smoke_share;
+  const T distractor = exp(weights[1]) * look.distractor_share;
+  return distractor > fire ? distractor : fire;
 }
 
 // The logit of a period before it fluctuates; only where there is a signal.
@@ -74,8 +76,9 @@ T ExpectedMean(const PeriodLook& look, const Given& given, const T* weights, con
   return sum + ceiling * 0.5 * erfc(rest / std::sqrt(2.0));
 }
 
-// The parameters of a configuration, on these scales; a weight of 0 is -infinity.
-Weights WeightsOf(const PerceptionConfig& perception);
+// The parameters of a configuration, on these scales; a weight of 0 is -infinity. The distractors' weight is that for the
+// model of `response`, its gain included.
+Weights WeightsOf(const PerceptionConfig& perception, const ResponseConfig& response);
 Response ResponseOf(const ResponseConfig& response, double fire_weight);
 
 }  // namespace ed3r::profile

@@ -102,8 +102,8 @@ std::string ProfileFitYaml(const ProfileFit& fit, const std::string& made_from) 
     const ResponseConfig& r = response.response;
     yaml += fmt::format(
         "  {}: {{half_signal: {:.4g}, slope: {:.4g}, ceiling: {:.4g}, view_sigma: {:.4g}, frame_sigma: "
-        "{:.4g}}}\n",
-        name, r.half_signal, r.slope, r.ceiling, r.view_sigma, r.frame_sigma);
+        "{:.4g}, distractor_gain: {:g}}}\n",
+        name, r.half_signal, r.slope, r.ceiling, r.view_sigma, r.frame_sigma, r.distractor_gain);
   }
   return yaml;
 }

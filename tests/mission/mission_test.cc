@@ -73,15 +73,22 @@ TEST_F(MissionTest, ArmsMeetTheSameNature) {
   }
 }
 
-TEST_F(MissionTest, AFalsePositiveHasNoFireInViewWhenItCompletes) {
+// R16: a completion that fire and smoke alone would have reached is a success, any other a false positive.
+TEST_F(MissionTest, AFalsePositiveWouldNotHaveCompletedWithoutDistractors) {
   config_.perception.distractors_per_km2 = 4000;
   int false_positives = 0;
   for (std::uint32_t scenario = 0; scenario < 20; ++scenario) {
     const MissionRecord record = Fly("rbs", scenario);
-    if (record.outcome != static_cast<std::int64_t>(Outcome::kFalsePositive)) continue;
-    ++false_positives;
-    EXPECT_EQ(record.steps.back().fire_in_view, 0);
-    EXPECT_EQ(record.steps[record.steps.size() - 2].fire_in_view, 0);
+    if (record.outcome == static_cast<std::int64_t>(Outcome::kBatteryDepleted)) continue;
+    const bool false_positive = record.outcome == static_cast<std::int64_t>(Outcome::kFalsePositive);
+    false_positives += false_positive ? 1 : 0;
+    const TimestepRecord& last = record.steps.back();
+    const TimestepRecord& first = record.steps[record.steps.size() - 2];
+    for (const TimestepRecord* step : {&first, &last}) {
+      EXPECT_GE(step->scs, config_.agents.eta_min);
+      EXPECT_LE(step->fire_only_scs, step->scs);
+    }
+    EXPECT_EQ(std::min(first.fire_only_scs, last.fire_only_scs) < config_.agents.eta_min, false_positive);
   }
   EXPECT_GT(false_positives, 3);
 }

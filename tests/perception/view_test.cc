@@ -91,9 +91,37 @@ TEST(DistractorTest, MisleadsFromAboveOnly) {
   const FireView fire(scene, 0);
   const Config config;
   const std::vector<Distractor> rock = {{{50, 100, 0.5}, 3.0}};
-  EXPECT_GT(fire.Look(At(50, 100, 30, 90, 85), config.sensing, config.perception, rock).distractor_share,
-            0.0);
-  EXPECT_EQ(fire.Look(At(20, 100, 10, 0, 10), config.sensing, config.perception, rock).distractor_share, 0.0);
+  const auto share = [&](const Pose& pose, const std::vector<Distractor>& seen) {
+    return fire.Look(pose, config.sensing, config.perception, seen).distractor_share;
+  };
+  const double above = share(At(50, 100, 30, 90, 85), rock);
+  EXPECT_GT(above, 0.0);
+  // From the side, 18 degrees down, the law leaves 0.7 %, and of that the flat disc shows a third.
+  EXPECT_LT(share(At(20, 100, 10, 0, 10), rock), 0.01 * above);
+  // Of several the one that misleads most counts, wherever it stands in the list.
+  const Distractor small = {{51, 100, 0.5}, 1.0};
+  EXPECT_EQ(share(At(50, 100, 30, 90, 85), {rock[0], small}), above);
+  EXPECT_EQ(share(At(50, 100, 30, 90, 85), {small, rock[0]}), above);
+}
+
+TEST(DistractorTest, HowSteeplyDecidesByALogisticLaw) {
+  const Scene scene = FlatScene(false);
+  const FireView fire(scene, 0);
+  Config config;
+  config.perception.distractor_tilt_deg = 60;
+  config.perception.distractor_tilt_width_deg = 4;
+  config.perception.haze_range_m = 1e6;
+  // The same rock at the same distance and in the same place of the image, seen at 60 and at 64 degrees below level: the
+  // disc shows sin of the angle of its area, and the law leaves 1/2 and 1 / (1 + 1/e).
+  const auto seen_at = [&](double steepness_deg) {
+    const double angle = steepness_deg * std::numbers::pi / 180.0;
+    const std::vector<Distractor> rock = {{{50 + 40 * std::cos(angle), 100, 90 - 40 * std::sin(angle)}, 0.5}};
+    return fire.Look(At(50, 100, 90, 0, steepness_deg), config.sensing, config.perception, rock)
+               .distractor_share /
+           std::sin(angle);
+  };
+  EXPECT_NEAR(seen_at(64) / seen_at(60), 2.0 / (1.0 + std::exp(-1.0)), 1e-3);
+  EXPECT_NEAR(seen_at(56) / seen_at(60), 2.0 / (1.0 + std::exp(1.0)), 1e-3);
 }
 
 TEST(DistractorTest, DrawnPerScenarioAndAtTheAskedDensity) {
@@ -104,6 +132,26 @@ TEST(DistractorTest, DrawnPerScenarioAndAtTheAskedDensity) {
   EXPECT_EQ(first.size(), 30u);
   EXPECT_EQ(first[3].position_m, DrawDistractors(scene, perception, 1, 1)[3].position_m);
   EXPECT_NE(first[3].position_m, DrawDistractors(scene, perception, 1, 2)[3].position_m);
+}
+
+TEST(DistractorTest, RadiiHaveTheAskedMeanAndTail) {
+  const Scene scene = FlatScene(false);
+  PerceptionConfig perception;
+  perception.distractors_per_km2 = 5000;
+  perception.distractor_radius_m = 2.0;
+  perception.distractor_radius_sigma = 0.8;
+  double sum = 0.0, logarithms = 0.0, squares = 0.0;
+  int count = 0;
+  for (std::uint32_t scenario = 0; scenario < 40; ++scenario)
+    for (const Distractor& distractor : DrawDistractors(scene, perception, 1, scenario)) {
+      ++count;
+      sum += distractor.radius_m;
+      logarithms += std::log(distractor.radius_m);
+      squares += std::log(distractor.radius_m) * std::log(distractor.radius_m);
+    }
+  const double mean_log = logarithms / count;
+  EXPECT_NEAR(sum / count, 2.0, 0.06);
+  EXPECT_NEAR(std::sqrt(squares / count - mean_log * mean_log), 0.8, 0.02);
 }
 
 }  // namespace

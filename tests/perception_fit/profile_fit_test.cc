@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/check.h"
@@ -33,8 +34,8 @@ std::vector<PeriodLook> Looks(const PerceptionConfig& truth, int count) {
     look.distractor_share = stream.Uniform() < 0.3 ? std::pow(10.0, stream.Uniform(-4.0, -1.0)) : 0.0;
     look.fire_in_view_pixels = look.fire_in_view_geometry = look.fire_share + look.smoke_share > 0.0;
     const ResponseConfig& r = look.quantized ? truth.quantized : truth.full;
-    const double signal = look.fire_share + truth.smoke_weight * look.smoke_share +
-                          truth.distractor_weight * look.distractor_share;
+    const double signal = std::max(look.fire_share + truth.smoke_weight * look.smoke_share,
+                                   truth.distractor_weight * look.distractor_share);
     std::vector<double> frames(33, 0.0);
     if (signal > 0.0) {
       const double logit = r.slope * std::log10(signal / r.half_signal) + r.view_sigma * stream.Normal();

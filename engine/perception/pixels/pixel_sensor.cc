@@ -26,11 +26,14 @@ class PixelSensor : public Sensor {
         frame_threshold_(config.perception.frame_threshold),
         renderer_(RendererOf(tier, config, scenario)) {}
 
-  Detection Sense(const Pose& pose, DetectionModel model, std::uint32_t timestep) const override {
+  Detection Sense(const Pose& pose, DetectionModel model, std::uint32_t timestep,
+                  std::uint32_t /*view*/) const override {
     const SensingFrames seen = renderer_.Sense(pose, timestep);
     const FrameDetector& detector = model == DetectionModel::kFull ? *detectors_.full : *detectors_.quantized;
     const double pixels = static_cast<double>(seen.frames.width_px) * seen.frames.height_px;
-    return {.score = StableConfidence(Confidences(detector, seen.frames), frame_threshold_),
+    const Score score = StableConfidence(Confidences(detector, seen.frames), frame_threshold_);
+    return {.score = score,
+            .fire_only_scs = seen.truth.FireInView() ? score.scs : 0.0,
             .fire_share = seen.truth.fire_px / pixels,
             .smoke_share = seen.truth.smoke_px / pixels,
             .fire_in_view = seen.truth.FireInView()};
