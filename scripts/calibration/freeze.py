@@ -1,0 +1,141 @@
+"""Keeps what the search found: the worlds that are left, the one that stands for them, and the picture of the set.
+
+Writes
+  sweeps/calibration/frozen.yaml    the default: keys of the world with the least implausibility, and hashes of what they
+                                    were found in
+  sweeps/calibration/matched.csv    every world that is left, with its point, its measures and its implausibility
+  sweeps/worlds/paper.yaml          the default world
+  sweeps/worlds/matched/            the other worlds
+  sweeps/matched.yaml               flies all that is to be predicted in every one of them
+  results/calibration/              the corner plot and the table of RBS in the default world
+"""
+
+import csv
+import hashlib
+
+from calibration import record
+from calibration.corner import draw
+from calibration.evidence import EVIDENCE, WARMUP_TIMESTEPS
+from calibration.flights import RIDGES, ROOT
+from calibration.space import NAMES, settings_of, world_text
+from calibration.waves import CUT
+
+WORLDS = ROOT / "sweeps/worlds"
+MATCHED = 24  # worlds that are kept at most
+NEAREST_WARMUP = ("equal", "coin")
+
+SWEEP = """# What of the paper holds in every world that its random walk does not rule out?   (written by scripts/calibrate.py freeze)
+name: matched
+seed: 20260101
+missions: {missions}
+set: {{training.learning_rate: 5e-5, training.epochs: 80, training.seeds: 2}}   # quick: a hundredth of the paper's steps
+sweep:                    # every world flies its own warm-up and trains its own networks
+  list:
+{variants}
+stages:
+  - name: warmup
+    missions: 510        # 85 at each known site
+    set: {{mission.sites: known, mission.base_stations: known, mission.first_scenario: 1000000}}
+    sweep:
+      list:
+        - {{name: warmup, strategy: random}}
+        - {{name: warmup-ecd2r, strategy: random-offload}}
+  - {{name: training, kind: train, after: warmup}}
+  - name: online
+    after: training
+    sweep:
+      list:
+        - {{name: ed3r-65, strategy: ed3r, agents.eta_min: 0.65}}
+        - {{name: ed3r-75, strategy: ed3r, agents.eta_min: 0.75}}
+        - {{name: ed3r-85, strategy: ed3r, agents.eta_min: 0.85}}
+        - {{name: ablation-1, strategy: ablation-1}}
+        - {{name: ablation-2, strategy: ablation-2}}
+        - {{name: ablation-3, strategy: ablation-3}}
+        - {{name: ablation-4, strategy: ablation-4}}
+        - {{name: ecd2r, strategy: ecd2r}}
+        - {{name: rbs, strategy: rbs}}
+"""
+
+
+def random_execution(row):
+    """The reading of the warm-up's offloads that comes nearer to the paper's timesteps."""
+    return min(NEAREST_WARMUP, key=lambda name: abs(row[f"warmup_timesteps_{name}"] - WARMUP_TIMESTEPS.paper))
+
+
+def keys_of(row):
+    return {"energy.move_time": "nominal", "agents.random_execution": random_execution(row),
+            **settings_of(record.point_of(row))}
+
+
+def matched_rows(rows, judged_wave):
+    """Judged worlds that are not ruled out, the most plausible first; where there are too few, the nearest."""
+    judged = sorted((row for row in record.flown(rows) if row["wave"] == judged_wave), key=lambda row: row["implausibility"])
+    left = [row for row in judged if row["implausibility"] < CUT]
+    return (left or judged)[:MATCHED]
+
+
+def sha256(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def write_worlds(matched):
+    files = [WORLDS / "paper.yaml"] + [WORLDS / f"matched/m{i:02d}.yaml" for i in range(1, len(matched))]
+    (WORLDS / "matched").mkdir(exist_ok=True)
+    for old in (WORLDS / "matched").glob("m*.yaml"):
+        old.unlink()
+    for file, row in zip(files, matched):
+        base = "ridges.yaml" if file.parent == WORLDS else "../ridges.yaml"
+        about = ("The default world: what the paper leaves open was found from what it says of its random walk alone."
+                 if file.parent == WORLDS else "A world that the paper's random walk does not rule out.")
+        file.write_text(world_text(record.point_of(row), file.stem, base, f"{about} (scripts/calibrate.py)"))
+    return files
+
+
+def write_frozen(folder, row):
+    lines = [f"# Frozen by scripts/calibrate.py: wave {row['wave']}, point {row['point']} of record.csv, implausibility "
+             f"{row['implausibility']:.6g}.",
+             f"world_sha256: {sha256(WORLDS / 'paper.yaml')}  # of sweeps/worlds/paper.yaml",
+             f"terrain_sha256: {sha256(RIDGES)}  # of sweeps/worlds/ridges.yaml",
+             *(f"{key}: {value}" for key, value in keys_of(row).items())]
+    (folder / "frozen.yaml").write_text("\n".join(lines) + "\n")
+
+
+def write_matched(folder, matched, files):
+    columns = ["world", *NAMES, "random_execution", *record.MEASURES, "implausibility"]
+    with open(folder / "matched.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n", extrasaction="ignore")
+        writer.writeheader()
+        for row, world in zip(matched, files):
+            writer.writerow({key: f"{value:.6g}" if isinstance(value, float) else value for key, value in
+                             {**row, "world": world.stem, "random_execution": random_execution(row)}.items()})
+    variants = []
+    for row, world in zip(matched, files):
+        keys = ", ".join(f"{key}: {value}" for key, value in keys_of(row).items())
+        variants.append(f"    - {{name: {world.stem}, mission.world: {world.relative_to(ROOT / 'sweeps')}, {keys}}}")
+    (ROOT / "sweeps/matched.yaml").write_text(SWEEP.format(missions=112, variants="\n".join(variants)))
+
+
+def write_table(folder, row):
+    lines = [f"{'RBS in the default world':<34}{'paper':>9}{'ours':>9}{'+-':>7}{'implausibility':>16}"]
+    for quantity in EVIDENCE:
+        value, error = row[quantity.name], row[f"{quantity.name}_error"]
+        distance = abs(quantity.scaled(value) - quantity.target()) / (
+            (quantity.slope(value) * error) ** 2 + quantity.variance()) ** 0.5
+        lines.append(f"{quantity.word:<34}{quantity.paper:>9.2f}{value:>9.2f}{error:>7.2f}{distance:>16.2f}")
+    (folder / "rbs.txt").write_text("\n".join(lines) + "\n")
+    print("\n".join(lines))
+
+
+def freeze(rows, folder, judged_wave):
+    matched = matched_rows(rows, judged_wave)
+    for row in rows:
+        row["frozen"] = "yes" if row is matched[0] else ""
+    record.write(folder / "record.csv", rows)
+    files = write_worlds(matched)
+    write_frozen(folder, matched[0])
+    write_matched(folder, matched, files)
+    results = ROOT / "results/calibration"
+    results.mkdir(exist_ok=True)
+    write_table(results, matched[0])
+    draw(rows, matched, results / "corner.png")
+    print(f"{len(matched)} worlds, {sum(row['implausibility'] < CUT for row in matched)} of them not ruled out")
