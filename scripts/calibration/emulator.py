@@ -24,8 +24,8 @@ def scaled(quantity, measures):
 
 
 def kept(quantity, measures):
-    value, error = measures[quantity.name]
-    return np.isfinite(value) and np.isfinite(error)
+    """Whether the point says anything of the quantity: without reliable looks there is no confidence."""
+    return bool(np.all(np.isfinite(measures.get(quantity.name, (np.nan, np.nan)))))
 
 
 class Emulator:
@@ -61,7 +61,8 @@ class Emulator:
 
 
 def implausibility_of(measures, quantities=EVIDENCE):
-    """Of a flown point, one number for each quantity; what its own missions leave uncertain counts."""
+    """Of a flown point, one number for each quantity; what its own missions leave uncertain counts. Infinite where the point
+    says nothing of it."""
     result = []
     for quantity in quantities:
         if not kept(quantity, measures):

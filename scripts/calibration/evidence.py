@@ -53,6 +53,7 @@ EVIDENCE = (
     Quantity("p85_msr_pct", 73.44, 5.5, 2.5, True, "P85 MSR, %"),
     Quantity("p85_wer_pct", 28.92, 6.0, 2.5, True, "P85 WER, %"),
     Quantity("p85_scs_pct", 87.73, 0.6, 0.7, True, "P85 SCS, %"),
+    # 115 thousand samples in 2040 missions, with a coin between offloading and on board: with three equal actions (R36) the
+    # base stations would have to stand where offloading never pays (R12).
+    Quantity("warmup_timesteps_coin", 56.4, 0.25, 2.0, word="timesteps of a warm-up mission"),
 )
-# Of the warm-up: 115 thousand samples in 2040 missions.
-WARMUP_TIMESTEPS = Quantity("warmup_timesteps", 56.4, 0.25, 2.0, word="timesteps of a warm-up mission")

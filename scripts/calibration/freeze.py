@@ -15,14 +15,13 @@ import hashlib
 
 from calibration import record
 from calibration.corner import draw
-from calibration.evidence import EVIDENCE, WARMUP_TIMESTEPS
+from calibration.evidence import EVIDENCE
 from calibration.flights import RIDGES, ROOT
 from calibration.space import NAMES, settings_of, world_text
 from calibration.waves import CUT
 
 WORLDS = ROOT / "sweeps/worlds"
 MATCHED = 24  # worlds that are kept at most
-NEAREST_WARMUP = ("equal", "coin")
 
 SWEEP = """# What of the paper holds in every world that its random walk does not rule out?   (written by scripts/calibrate.py freeze)
 name: matched
@@ -57,13 +56,8 @@ stages:
 """
 
 
-def random_execution(row):
-    """The reading of the warm-up's offloads that comes nearer to the paper's timesteps."""
-    return min(NEAREST_WARMUP, key=lambda name: abs(row[f"warmup_timesteps_{name}"] - WARMUP_TIMESTEPS.paper))
-
-
 def keys_of(row):
-    return {"energy.move_time": "nominal", "agents.random_execution": random_execution(row),
+    return {"energy.move_time": "nominal", "agents.random_execution": "coin",
             **settings_of(record.point_of(row))}
 
 
@@ -101,13 +95,13 @@ def write_frozen(folder, row):
 
 
 def write_matched(folder, matched, files):
-    columns = ["world", *NAMES, "random_execution", *record.MEASURES, "implausibility"]
+    columns = ["world", *NAMES, *record.MEASURES, "implausibility"]
     with open(folder / "matched.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, columns, lineterminator="\n", extrasaction="ignore")
         writer.writeheader()
         for row, world in zip(matched, files):
             writer.writerow({key: f"{value:.6g}" if isinstance(value, float) else value for key, value in
-                             {**row, "world": world.stem, "random_execution": random_execution(row)}.items()})
+                             {**row, "world": world.stem}.items()})
     variants = []
     for row, world in zip(matched, files):
         keys = ", ".join(f"{key}: {value}" for key, value in keys_of(row).items())

@@ -24,13 +24,17 @@ def row_of(wave, number, missions, point, measures):
     for name in MEASURES:
         if name in measures:
             row[name], row[f"{name}_error"] = measures[name]
-    ranked = np.sort(implausibility_of(measures))
+    return judged(row)
+
+
+def judged(row):
+    ranked = np.sort(implausibility_of(measures_of(row)))
     row["implausibility"], row["second_implausibility"] = float(ranked[-1]), float(ranked[-2])
     return row
 
 
 def measures_of(row):
-    return {name: (row[name], row[f"{name}_error"]) for name in MEASURES if not math.isnan(row[name])}
+    return {name: (row[name], row[f"{name}_error"]) for name in MEASURES if not math.isnan(row.get(name, math.nan))}
 
 
 def point_of(row):
@@ -46,8 +50,9 @@ def read(path):
         return []
     words = {parameter.name for parameter in SPACE if parameter.levels} | {"frozen"}
     with open(path, newline="") as file:
-        return [{key: text if key in words else int(text) if key in ("wave", "point", "missions") else
+        rows = [{key: text if key in words else int(text) if key in ("wave", "point", "missions") else
                  float(text) if text else math.nan for key, text in row.items()} for row in csv.DictReader(file)]
+    return [judged(row) if not math.isnan(row["energy_kj"]) else row for row in rows]
 
 
 def write(path, rows):
