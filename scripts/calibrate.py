@@ -2,7 +2,7 @@
 """Finds the worlds that what the paper says of its random walk does not rule out (history matching): calibrate.py [STEP]...
 
   waves     flies points of the space (scripts/calibration/space.py), each by RBS and a random warm-up alone; emulators say
-            where to fly next; two waves, each with seeds of its own
+            where to fly next; three waves, each with seeds of its own
   judge     flies what is left with fresh seeds and more missions
   freeze    keeps the worlds that are left: sweeps/calibration/, sweeps/worlds/rbs/, results/calibration/
 Without a STEP: all of them. Each continues where it stopped; the same code gives the same record.
@@ -22,8 +22,8 @@ from calibration import flights, record, waves  # noqa: E402
 
 FOLDER = flights.ROOT / "sweeps/calibration"
 # points, missions each, warm-up missions each
-WAVES = ((140, 112, 8), (100, 168, 8))
-JUDGED = (32, 1120, 24)
+WAVES = ((140, 112, 8), (100, 168, 8), (60, 336, 12))
+JUDGED = (28, 840, 16)
 SEED = 20261128
 STEPS = ("waves", "judge", "freeze")
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/check.h"
@@ -107,7 +108,9 @@ void SumSteps(double eta_min, MissionRecord& record) {
     }
     if (!std::isnan(step.rc_predicted_reward)) {
       ++record.predicted_timesteps;
-      record.absolute_reward_error_sum += std::abs(step.rc_predicted_reward - step.reward);
+      const double error = std::abs(step.rc_predicted_reward - step.reward);
+      record.absolute_reward_error_sum += error;
+      record.largest_reward_error = std::max(record.largest_reward_error, error);
     }
   }
 }

@@ -71,6 +71,7 @@ struct MissionRecord {
   std::int64_t offloads = 0, full_local = 0, quantized_local = 0;
   std::int64_t random_motions = 0;  // timesteps with a random RC action (R20)
   double reward_sum = 0, absolute_reward_error_sum = 0;
+  double largest_reward_error = 0;       // of one timestep, absolute
   std::int64_t predicted_timesteps = 0;  // timesteps with an RC prediction (R29)
   double start_x_m = 0, start_y_m = 0, start_z_m = 0, start_yaw_rad = 0, start_rc_distance_m = 0;
 
@@ -125,6 +126,7 @@ void MissionRecord::Describe(Self& s, Visitor&& visit) {
       visit("full_local", s.full_local);
   visit("quantized_local", s.quantized_local), visit("random_motions", s.random_motions);
   visit("reward_sum", s.reward_sum), visit("absolute_reward_error_sum", s.absolute_reward_error_sum);
+  visit("largest_reward_error", s.largest_reward_error);
   visit("predicted_timesteps", s.predicted_timesteps), visit("start_x_m", s.start_x_m),
       visit("start_y_m", s.start_y_m);
   visit("start_z_m", s.start_z_m), visit("start_yaw_rad", s.start_yaw_rad),

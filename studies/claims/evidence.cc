@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "studies/claims/equivalence.h"
 #include "studies/metrics/definitions.h"
 
 namespace ed3r {
@@ -60,6 +61,7 @@ Weight Weigh(const Formula& formula, double tolerance, const ResampledArms& arms
 // The paper's own value of a cell, give or take its rounding.
 struct Printed {
   double value = kNoNumber, half_unit = 0;
+  double largest = 0;  // of the values that it is made of
 };
 
 Printed PaperDifference(const Formula& leaf, const std::vector<Claim>& claims) {
@@ -68,13 +70,10 @@ Printed PaperDifference(const Formula& leaf, const std::vector<Claim>& claims) {
     const auto paper = FindPaperValue(claims, cell.arm, MetricDefinitions()[cell.metric].name);
     if (!paper) return kNoNumber;
     printed.half_unit += paper->half_unit;
+    printed.largest = std::max(printed.largest, std::abs(paper->value));
     return paper->value;
   });
   return printed;
-}
-
-bool Contains(double lo, double hi, double value, double slack) {
-  return lo - slack <= value && value <= hi + slack;  // false for NaN
 }
 
 bool HasAlternatives(const Formula& formula) {
@@ -88,8 +87,15 @@ bool SizesAgree(const Formula& formula, const ResampledArms& arms, const std::ve
   for (const Formula* leaf : LeavesOf(formula)) {
     const Printed paper = PaperDifference(*leaf, claims);
     if (std::isnan(paper.value)) return false;
-    const Uncertainty ours = UncertaintyOf(arms.Of(Difference(*leaf)));
-    if (!Contains(ours.lo, ours.hi, paper.value, paper.half_unit)) return false;
+    const Quantity difference = Difference(*leaf);
+    const Resampled ours = arms.Of(difference);
+    const Uncertainty uncertainty = UncertaintyOf(ours);
+    const std::vector<Cell> cells = CellsOf(difference);
+    const bool percentage = MetricDefinitions()[cells.front().metric].unit == "%";
+    const SizeDifference size = CompareSizes(ours.value, uncertainty.lo, uncertainty.hi, paper.value,
+                                             uncertainty.sd_missions * arms.ToPaperSize(cells),
+                                             paper.half_unit, MarginOf(paper.largest, percentage));
+    if (size.verdict != SizeVerdict::kEquivalent) return false;
     any = true;
   }
   return any;
@@ -119,13 +125,21 @@ Evidence WeighOrder(const Claim& claim, const Formula& formula, const ResampledA
 Evidence WeighNumber(const Claim& claim, const Quantity& quantity, const ResampledArms& arms) {
   Evidence evidence;
   if (const auto paper = PaperValueOf(claim)) evidence.paper = paper->value;
+  const Resampled number = arms.Of(quantity);
+  const Uncertainty uncertainty = UncertaintyOf(number);
+  evidence.own_sd = uncertainty.sd_missions;
+  evidence.paper_sd = uncertainty.sd_missions * arms.ToPaperSize(CellsOf(quantity));
   if (IsPlainCell(quantity) && !IsP85(quantity.cell.arm)) {
     const MetricValue& ours = arms.TableValue(quantity.cell);
     evidence.ours = ours.value, evidence.lo = ours.lo, evidence.hi = ours.hi;
+    // A rate that our missions happen not to show has its chance in the paper's all the same.
+    if (MetricDefinitions()[quantity.cell.metric].estimate == Estimate::kRate &&
+        !std::isnan(evidence.paper)) {
+      const double share = std::clamp(evidence.paper / 100.0, 0.0, 1.0);
+      evidence.paper_sd = 100.0 * std::sqrt(share * (1.0 - share) / kPaperMissions);
+    }
     return evidence;
   }
-  const Resampled number = arms.Of(quantity);
-  const Uncertainty uncertainty = UncertaintyOf(number);
   evidence.ours = number.value, evidence.lo = uncertainty.lo, evidence.hi = uncertainty.hi;
   if (claim.kind != "ratio") {
     // Student's t may leave what is possible.
@@ -134,9 +148,9 @@ Evidence WeighNumber(const Claim& claim, const Quantity& quantity, const Resampl
     return evidence;
   }
   evidence.directional = true;
-  evidence.neutral = quantity.kind == Quantity::Kind::kDivide ? 1 : 0;
-  const Sides sides = TestAgainst(number, uncertainty, evidence.neutral);
-  const bool more = evidence.paper > evidence.neutral;
+  const double no_difference = quantity.kind == Quantity::Kind::kDivide ? 1 : 0;
+  const Sides sides = TestAgainst(number, uncertainty, no_difference);
+  const bool more = evidence.paper > no_difference;
   evidence.p_for = more ? sides.above : sides.below;
   evidence.p_against = more ? sides.below : sides.above;
   return evidence;

@@ -20,8 +20,9 @@ struct Evidence {
   bool directional = false;
   double p_for = kNoNumber, p_against = kNoNumber;
   bool sizes_agree =
-      false;  // orders: every difference that the paper prints lies in our interval, and there is one
-  double neutral = 0;  // comparisons: the value of "no difference"
+      false;  // orders: every difference that the paper prints is equivalent to ours, and there is one
+  // Standard error over missions, as many as flew and as many as the paper's; not of orders.
+  double own_sd = kNoNumber, paper_sd = kNoNumber;
   std::string detail;  // orders: the least certain part
 };
 

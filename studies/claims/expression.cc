@@ -149,6 +149,13 @@ std::vector<Cell> CellsOf(const Expression& expression) {
   return {cells.begin(), cells.end()};
 }
 
+std::vector<Cell> CellsOf(const Quantity& quantity) {
+  Expression whole;
+  whole.is_quantity = true;
+  whole.quantity = quantity;
+  return CellsOf(whole);
+}
+
 std::string TextOf(const Quantity& quantity) {
   std::set<Cell> cells;
   Collect(quantity, cells);

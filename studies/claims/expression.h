@@ -73,6 +73,7 @@ bool Holds(const Formula& formula, double tolerance, const CellValue& value);
 
 // Cells of the expression, each once, sorted.
 std::vector<Cell> CellsOf(const Expression& expression);
+std::vector<Cell> CellsOf(const Quantity& quantity);
 
 // kLess and kSimilar formulas in it, from left to right.
 std::vector<const Formula*> LeavesOf(const Formula& formula);

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "engine/core/check.h"
+#include "studies/claims/equivalence.h"
 
 namespace ed3r {
 namespace {
@@ -36,12 +37,9 @@ bool IsSmallGroup(const ArmData& arm, const std::string& name) {
   return arm.name != name && SizeOfP85(arm.missions.size()) < kFewestInP85;
 }
 
-// By network.
-using WorstErrors = std::map<std::int64_t, double>;
-
-// What mission adds to the two totals of a metric. Look-forward accuracy is relative to the network's worst
-// mission at hand (as in the tables), which stays the same in every resample: what is said of it holds for those
-// worst missions.
+// What mission adds to the two totals of a metric. Look-forward accuracy is relative to the worst mission of the arm that the
+// network flew (as in the tables), which stays the same in every resample: what is said of it holds for those worst
+// missions.
 std::pair<double, double> Contribution(const MetricDefinition& metric, const MissionRecord& mission,
                                        const WorstErrors& worst_errors) {
   const double part = metric.part(mission), whole = metric.whole(mission);
@@ -49,16 +47,6 @@ std::pair<double, double> Contribution(const MetricDefinition& metric, const Mis
   if (whole == 0) return {0, 0};
   const double worst = worst_errors.at(mission.network);
   return {worst > 0 ? 1 - part / whole / worst : 1, 1};
-}
-
-WorstErrors WorstErrorsOf(const MetricDefinition& metric, const ArmData& arm) {
-  WorstErrors worst;
-  for (const MissionRecord& mission : arm.missions) {
-    double& of_network = worst[mission.network];
-    if (const double whole = metric.whole(mission); whole > 0)
-      of_network = std::max(of_network, metric.part(mission) / whole);
-  }
-  return worst;
 }
 
 // Missions in the order in which a P85 group takes them; in mission order where all count.
@@ -132,19 +120,14 @@ ResampledArms::View ResampledArms::MakeView(const std::string& name,
                                             const std::vector<std::size_t>& metrics) {
   const ArmData& arm = *FindArm(arms_, name);
   View view{name, arm.name != name, {}, {}, {}, {}};
-  const ArmData group = view.is_p85 ? P85Group(arm) : ArmData{};
-  const ArmData& shown = view.is_p85 ? group : arm;
-  const ArmMetrics values = ComputeMetrics(shown);
-  std::vector<WorstErrors> worst;
+  const ArmMetrics values = view.is_p85 ? ComputeP85(arm) : ComputeMetrics(arm);
+  const WorstErrors worst = WorstErrorsOf(arm.missions);
   for (const std::size_t metric : metrics) {
     Resampled& cell = cells_[{name, metric}];
     cell.value = values.values[metric].value;
     cell.network_count = NetworksOf(arm).size() > 1 ? networks_ : 1;
     if (!IsTotals(MetricDefinitions()[metric].estimate)) continue;
     view.metrics.push_back(metric);
-    // Of the group itself; of the arm where a network has no mission in it but may have in a resample.
-    worst.push_back(WorstErrorsOf(MetricDefinitions()[metric], shown));
-    worst.back().merge(WorstErrorsOf(MetricDefinitions()[metric], arm));
   }
   if (!view.is_p85) metrics_.emplace(name, values);
   for (const std::size_t i : FillingOrder(arm, view.is_p85)) {
@@ -152,7 +135,7 @@ ResampledArms::View ResampledArms::MakeView(const std::string& name,
     view.unit.push_back(unit_of_scenario_.at(mission.scenario));
     view.group.push_back(group_of_scenario_.at(mission.scenario));
     for (std::size_t m = 0; m < view.metrics.size(); ++m) {
-      const auto [part, whole] = Contribution(MetricDefinitions()[view.metrics[m]], mission, worst[m]);
+      const auto [part, whole] = Contribution(MetricDefinitions()[view.metrics[m]], mission, worst);
       view.columns.push_back(part), view.columns.push_back(whole);
     }
   }
@@ -220,10 +203,7 @@ std::vector<std::string> ResampledArms::Missing(const std::vector<Cell>& cells) 
 
 Resampled ResampledArms::Of(const Quantity& quantity) const {
   Resampled result;
-  Expression whole;
-  whole.is_quantity = true;
-  whole.quantity = quantity;
-  for (const Cell& cell : CellsOf(whole))
+  for (const Cell& cell : CellsOf(quantity))
     result.network_count = std::max(result.network_count, cells_.at(cell).network_count);
   result.value = ValueOf(quantity, [&](const Cell& cell) { return Value(cell); });
   const auto all = [&](std::vector<double> Resampled::*level, std::vector<double>& values) {
@@ -240,6 +220,12 @@ Resampled ResampledArms::Of(const Quantity& quantity) const {
 
 const MetricValue& ResampledArms::TableValue(const Cell& cell) const {
   return metrics_.at(cell.arm).values[cell.metric];
+}
+
+double ResampledArms::ToPaperSize(const std::vector<Cell>& cells) const {
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (const Cell& cell : cells) fewest = std::min(fewest, FindArm(arms_, cell.arm)->missions.size());
+  return cells.empty() ? kNone : std::sqrt(static_cast<double>(fewest) / kPaperMissions);
 }
 
 std::vector<ArmData> ResampledArms::FlownBy(int network) const {

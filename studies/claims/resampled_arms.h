@@ -39,6 +39,10 @@ class ResampledArms {
   // the group is chosen by what happened: use At).
   const MetricValue& TableValue(const Cell& cell) const;
 
+  // Turns a standard error over the missions at hand into one over as many as the paper flew: of the arm of `cells` with the
+  // fewest. (A P85 group is the same share of either.)
+  double ToPaperSize(const std::vector<Cell>& cells) const;
+
   int networks() const { return networks_; }                     // 1 where none or one flew
   bool networks_disagree() const { return networks_disagree_; }  // see FlownBy
   std::size_t scenarios() const { return group_of_scenario_.size(); }

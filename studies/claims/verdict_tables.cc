@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "studies/claims/equivalence.h"
 #include "studies/metrics/number_text.h"
 #include "studies/paper/csv.h"
 #include "studies/tables/layout.h"
@@ -97,15 +98,17 @@ std::string Summary(const ClaimStudy& study) {
   for (const Verdict verdict : kVerdicts)
     if (counts[verdict] > 0) {
       parts.push_back(fmt::format("{} {}", counts[verdict], NameOf(verdict)));
-      if (verdict == Verdict::kReproduced) {
-        const int built = CountReproducedByConstruction(study), fitted = CountReproducedByCalibration(study);
-        parts.back() += fmt::format(" ({} predicted, {} calibrated on, {} by construction)",
-                                    counts[verdict] - built - fitted, fitted, built);
-      }
+      if (const int built = CountReproducedByConstruction(study);
+          verdict == Verdict::kReproduced && built > 0)
+        parts.back() += fmt::format(" ({} by construction)", built);
+      if (const int fitted = CountCalibrated(study); verdict == Verdict::kEquivalent && fitted > 0)
+        parts.back() += fmt::format(" ({} calibrated on)", fitted);
       if (const int luck = CountWithinLuck(study); verdict == Verdict::kDiffers && luck > 0)
-        parts.back() += fmt::format(" ({} of them within the luck of one experiment)", luck);
+        parts.back() += fmt::format(" ({} of them no more than one network may)", luck);
     }
-  return Wrap(fmt::format("{} claims: {}.", study.claims.size(), fmt::join(parts, ", ")), "", kTerminalWidth);
+  return Wrap(fmt::format("{} claims, {} of them different: {}.", study.claims.size(), CountDistinct(study),
+                          fmt::join(parts, ", ")),
+              "", kTerminalWidth);
 }
 
 std::string Unmeasured(const ClaimStudy& study) {
@@ -128,14 +131,15 @@ std::string Unmeasured(const ClaimStudy& study) {
 
 // Of the table, in sentences with {} for what a run has.
 constexpr const char* kRules =
-    "reproduced: the paper's number is inside the interval, or within the claim's tolerance; or an order "
-    "holds and so "
-    "do the sizes that the paper prints. direction holds: p < 0.05, another size. differs: outside, or the "
-    "opposite "
-    "order holds. not decidable: an order without p < 0.05 either way; a number whose interval would hold "
-    "almost "
-    "anything (more than half of the value, for percentages half of it or of its complement, at least 5 "
-    "points).";
+    "equivalent: ours is the paper's number within {:g} % of a size or {:g} points of a percentage, whatever "
+    "chance may have done "
+    "to either (95 %, the sampling of the paper's own missions included). imprecise: compatible with it, but "
+    "not known well "
+    "enough. differs: no chance explains the difference; or the opposite order holds. reproduced: an order "
+    "holds and so do "
+    "the sizes that the paper prints. direction holds: p < 0.05, another size. not decidable: an order "
+    "without p < 0.05 "
+    "either way.";
 constexpr const char* kOrderNote =
     "An order shows the difference in its least certain part, + as claimed, and the paper's in the same "
     "part; "
@@ -144,9 +148,9 @@ constexpr const char* kOrderNote =
     "corrected by Holm over the {} different directional claims; with ! the opposite of the claim is the "
     "likelier.";
 constexpr const char* kLuckNote =
-    "(luck): it differs, but no more than one experiment of the paper's size may by chance (95 % prediction "
-    "interval "
-    "of a single network's, or of 850 missions).";
+    "(luck): it differs, but no more than one network on the paper's number of missions may (95 % prediction "
+    "interval). "
+    "(luck?): networks spread too widely to tell.";
 constexpr const char* kNetworksNote =
     "Intervals and p values include the luck of training ({} networks, Student's t). alone: verdicts by the "
     "missions "
@@ -160,9 +164,12 @@ constexpr const char* kOneNetworkNote =
 
 std::string Notes(const ClaimStudy& study) {
   const auto wrapped = [](const std::string& text) { return Wrap(text, "", kTerminalWidth); };
-  std::string notes = wrapped(kRules);
+  std::string notes = wrapped(fmt::format(kRules, 100 * kMarginShare, kMarginPoints));
   if (study.family > 0) notes += wrapped(fmt::format(kOrderNote, study.family));
-  if (CountWithinLuck(study) > 0) notes += wrapped(kLuckNote);
+  if (std::any_of(study.claims.begin(), study.claims.end(), [](const JudgedClaim& judged) {
+        return judged.luck == Luck::kWithin || judged.luck == Luck::kTooWide;
+      }))
+    notes += wrapped(kLuckNote);
   if (study.networks < 2) return notes + wrapped(kOneNetworkNote);
   notes += wrapped(fmt::format(kNetworksNote, study.networks, kVerdictLetters));
   return study.networks_disagree ? notes + wrapped(kTurnsNote) : notes;
@@ -209,12 +216,16 @@ Json VerdictJson(const ClaimStudy& study) {
                    {"ours", JsonNumber(judged.all.ours)},
                    {"lo", JsonNumber(judged.all.lo)},
                    {"hi", JsonNumber(judged.all.hi)},
+                   {"margin", JsonNumber(judged.all.margin)},
+                   {"difference_lo", JsonNumber(judged.all.difference_lo)},
+                   {"difference_hi", JsonNumber(judged.all.difference_hi)},
                    {"p", JsonNumber(judged.all.p)},
                    {"p_against", JsonNumber(judged.all.p_against)},
                    {"p_holm", JsonNumber(judged.all.p_holm)},
                    {"p_against_holm", JsonNumber(judged.all.p_against_holm)},
                    {"verdict", NameOf(judged.all.verdict)},
-                   {"within_luck", judged.within_luck},
+                   {"luck", NameOf(judged.luck)},
+                   {"repeats", judged.repeats},
                    {"why", judged.all.why},
                    {"by_network", ByNetworkJson(judged)}});
   }
@@ -223,8 +234,9 @@ Json VerdictJson(const ClaimStudy& study) {
 
 std::string VerdictCsv(const ClaimStudy& study) {
   std::string csv =
-      "id,where,strategy,metric,kind,claim,paper,ours,lo,hi,p,p_against,p_holm,p_against_holm,verdict,"
-      "within_luck,why";
+      "id,where,strategy,metric,kind,claim,paper,ours,lo,hi,margin,difference_lo,difference_hi,p,p_against,p_"
+      "holm,"
+      "p_against_holm,verdict,luck,repeats,why";
   for (const Verdict verdict : kVerdicts) {
     std::string column(NameOf(verdict));
     std::replace(column.begin(), column.end(), ' ', '_');
@@ -235,13 +247,14 @@ std::string VerdictCsv(const ClaimStudy& study) {
   for (const JudgedClaim& judged : study.claims) {
     const Claim& claim = judged.claim;
     const std::string& what = claim.comparison.empty() ? claim.strategy : claim.comparison;
-    csv +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", claim.id, CsvField(claim.where),
-                    CsvField(claim.strategy), claim.metric, claim.kind, CsvField(what),
-                    CsvNumber(judged.all.paper), CsvNumber(judged.all.ours), CsvNumber(judged.all.lo),
-                    CsvNumber(judged.all.hi), CsvNumber(judged.all.p), CsvNumber(judged.all.p_against),
-                    CsvNumber(judged.all.p_holm), CsvNumber(judged.all.p_against_holm),
-                    NameOf(judged.all.verdict), judged.within_luck ? "yes" : "no", CsvField(judged.all.why));
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", claim.id,
+                       CsvField(claim.where), CsvField(claim.strategy), claim.metric, claim.kind,
+                       CsvField(what), CsvNumber(judged.all.paper), CsvNumber(judged.all.ours),
+                       CsvNumber(judged.all.lo), CsvNumber(judged.all.hi), CsvNumber(judged.all.margin),
+                       CsvNumber(judged.all.difference_lo), CsvNumber(judged.all.difference_hi),
+                       CsvNumber(judged.all.p), CsvNumber(judged.all.p_against), CsvNumber(judged.all.p_holm),
+                       CsvNumber(judged.all.p_against_holm), NameOf(judged.all.verdict), NameOf(judged.luck),
+                       judged.repeats, CsvField(judged.all.why));
     std::map<Verdict, int> counts = CountByNetwork(judged);
     for (const Verdict verdict : kVerdicts) csv += fmt::format(",{}", counts[verdict]);
     csv += '\n';

@@ -7,25 +7,16 @@
 #include <optional>
 #include <set>
 
+#include "studies/claims/equivalence.h"
 #include "studies/claims/evidence.h"
+#include "studies/claims/luck.h"
 #include "studies/claims/setup.h"
 #include "studies/statistics/holm.h"
-#include "studies/statistics/intervals.h"
 
 namespace ed3r {
 namespace {
 
 constexpr double kLevel = 0.05;
-
-// An interval that reaches further than this would hold almost any value: half of the paper's, for
-// percentages half of what it or its complement is (a success rate is a failure rate), but 5 points at least.
-double CoarseReach(const Claim& claim, double paper) {
-  constexpr double kShare = 0.5, kPoints = 5;
-  if (!claim.unit.starts_with('%')) return kShare * std::abs(paper);
-  return std::max(kPoints, kShare * std::min(paper, 100 - paper));
-}
-
-constexpr std::size_t kPaperMissions = 850;
 
 struct ParsedClaim {
   const Claim* claim;
@@ -48,13 +39,13 @@ std::string Deviation(const Judgement& judged) {
   return fmt::format("ours - paper = {:+.3g}{}", difference, relative);
 }
 
-bool AgreesInSize(const Claim& claim, const Judgement& judged) {
-  const auto paper = PaperValueOf(claim);
-  if (!paper) return false;
-  const bool inside =
-      judged.lo - paper->half_unit <= paper->value && paper->value <= judged.hi + paper->half_unit;
-  return inside ||
-         (claim.tolerance > 0 && std::abs(judged.ours - paper->value) <= claim.tolerance + paper->half_unit);
+SizeDifference SizeOf(const Claim& claim, Judgement& judged) {
+  const PaperValue paper = *PaperValueOf(claim);
+  const SizeDifference size = CompareSizes(judged.ours, judged.lo, judged.hi, paper.value, judged.paper_sd,
+                                           paper.half_unit, MarginOf(claim, paper.value));
+  judged.difference_lo = size.lo, judged.difference_hi = size.hi, judged.margin = size.margin;
+  judged.why = Deviation(judged);
+  return size;
 }
 
 void DecideOrder(const Evidence& evidence, bool similarity, Judgement& judged) {
@@ -69,18 +60,15 @@ void DecideOrder(const Evidence& evidence, bool similarity, Judgement& judged) {
   }
 }
 
-void DecideComparison(const Claim& claim, const Evidence& evidence, Judgement& judged) {
-  const bool holds_none = judged.lo <= evidence.neutral && evidence.neutral <= judged.hi;
-  const bool agrees = AgreesInSize(claim, judged);
-  judged.why = Deviation(judged);
-  if (agrees && holds_none) {
-    judged.verdict = Verdict::kNotDecidable;
-    judged.why = "the interval holds the paper's value and no difference at all";
-  } else if (agrees) {
-    judged.verdict = Verdict::kReproduced;
-  } else {
-    judged.verdict = judged.p_holm < kLevel ? Verdict::kDirectionHolds : Verdict::kDiffers;
-  }
+void DecideComparison(const Claim& claim, Judgement& judged) {
+  const SizeDifference size = SizeOf(claim, judged);
+  const bool certain = judged.p_holm < kLevel;
+  if (size.verdict == SizeVerdict::kEquivalent)
+    judged.verdict = Verdict::kEquivalent;
+  else if (certain)
+    judged.verdict = Verdict::kDirectionHolds;
+  else
+    judged.verdict = size.verdict == SizeVerdict::kImprecise ? Verdict::kImprecise : Verdict::kDiffers;
 }
 
 void DecideNumber(const Claim& claim, Judgement& judged) {
@@ -94,17 +82,17 @@ void DecideNumber(const Claim& claim, Judgement& judged) {
     judged.why = "no mission of this run has a value";
     return;
   }
-  judged.why = Deviation(judged);
-  if (!AgreesInSize(claim, judged)) {
-    judged.verdict = Verdict::kDiffers;
-    return;
+  switch (SizeOf(claim, judged).verdict) {
+    case SizeVerdict::kEquivalent:
+      judged.verdict = claim.source == "construction" ? Verdict::kReproduced : Verdict::kEquivalent;
+      break;
+    case SizeVerdict::kImprecise:
+      judged.verdict = Verdict::kImprecise;
+      break;
+    case SizeVerdict::kDiffers:
+      judged.verdict = Verdict::kDiffers;
+      break;
   }
-  const double reach = std::max(judged.hi - judged.ours, judged.ours - judged.lo);
-  const bool coarse = claim.source != "construction" && reach > CoarseReach(claim, judged.paper);
-  judged.verdict = coarse ? Verdict::kNotDecidable : Verdict::kReproduced;
-  if (coarse)
-    judged.why =
-        fmt::format("inside, but the interval reaches {:.0f} % of the value", 100 * reach / judged.paper);
 }
 
 // The longest mission of many is longer than that of few: it compares with the paper's only at the paper's number.
@@ -114,7 +102,7 @@ bool GrowsWithTheRun(const ParsedClaim& parsed, std::span<const ArmData> arms) {
     const auto arm = std::find_if(arms.begin(), arms.end(), [&](const ArmData& data) {
       return data.name == cell.arm && !data.missions.empty();
     });
-    return arm != arms.end() && arm->missions.size() != kPaperMissions;
+    return arm != arms.end() && static_cast<double>(arm->missions.size()) != kPaperMissions;
   });
 }
 
@@ -124,33 +112,19 @@ bool AsksNetworks(const ParsedClaim& parsed, const ResampledArms& arms) {
                      [&](const Cell& cell) { return arms.At(cell).network_count > 1; });
 }
 
-// How far one more network's value may lie from ours; NaN with fewer than two.
-double ReachOfANetwork(const JudgedClaim& judged) {
-  std::vector<double> alone;
-  for (const Judgement& network : judged.by_network) alone.push_back(network.ours);
-  const Interval of_mean = MeanInterval(alone);
-  return 0.5 * (of_mean.hi - of_mean.lo) * std::sqrt(1.0 + static_cast<double>(alone.size()));
+// Claims that say the same of the same have the same key; facts of the set-up are each their own.
+std::string KeyOf(const Claim& claim) {
+  if (claim.kind == "setup" || !claim.unmeasured.empty()) return claim.id;
+  const std::string& what = claim.comparison.empty() ? claim.strategy : claim.comparison;
+  return fmt::format("{}|{}|{}|{}", claim.kind, what, claim.metric, claim.paper_value);
 }
 
-// How far the value of the paper's number of missions may lie from ours, of `missions`.
-double ReachOfMissions(const Judgement& judged, std::size_t missions) {
-  return 0.5 * (judged.hi - judged.lo) *
-         std::sqrt(1.0 + static_cast<double>(missions) / static_cast<double>(kPaperMissions));
-}
-
-bool IsWithinLuck(const JudgedClaim& judged, const ParsedClaim& parsed, const ResampledArms& arms,
-                  std::span<const ArmData> data) {
-  const auto paper = PaperValueOf(judged.claim);
-  if (judged.all.verdict != Verdict::kDiffers || !paper || parsed.cells.empty()) return false;
-  const std::string& name = parsed.cells.front().arm;
-  const auto arm = std::find_if(data.begin(), data.end(), [&](const ArmData& flown) {
-    return !flown.missions.empty() && (flown.name == name || P85Name(flown.name) == name);
-  });
-  if (arm == data.end()) return false;
-  const bool several = AsksNetworks(parsed, arms);
-  if (!several && arm->missions.front().network >= 0) return false;  // one network: its luck is not known
-  const double reach = several ? ReachOfANetwork(judged) : ReachOfMissions(judged.all, arm->missions.size());
-  return std::abs(judged.all.ours - paper->value) <= reach + paper->half_unit;  // false for NaN
+void MarkRepeats(ClaimStudy& study) {
+  std::map<std::string, std::string> first;
+  for (JudgedClaim& judged : study.claims) {
+    const auto [found, fresh] = first.try_emplace(KeyOf(judged.claim), judged.claim.id);
+    if (!fresh) judged.repeats = found->second;
+  }
 }
 
 // One round: every claim by the missions of one set of arms.
@@ -221,10 +195,11 @@ class Round {
     judged.ours = evidence.ours, judged.lo = evidence.lo, judged.hi = evidence.hi;
     judged.paper = evidence.paper;
     judged.p = evidence.p_for, judged.p_against = evidence.p_against;
+    judged.own_sd = evidence.own_sd, judged.paper_sd = evidence.paper_sd;
     if (claim.kind == "order")
       DecideOrder(evidence, claim.tolerance > 0, judged);
     else if (claim.kind == "ratio")
-      DecideComparison(claim, evidence, judged);
+      DecideComparison(claim, judged);
     else
       DecideNumber(claim, judged);
     if (claim.inconsistent.empty() || judged.verdict == Verdict::kNotMeasured) return;
@@ -247,6 +222,10 @@ std::string_view NameOf(Verdict verdict) {
   switch (verdict) {
     case Verdict::kReproduced:
       return "reproduced";
+    case Verdict::kEquivalent:
+      return "equivalent";
+    case Verdict::kImprecise:
+      return "imprecise";
     case Verdict::kDirectionHolds:
       return "direction holds";
     case Verdict::kDiffers:
@@ -261,14 +240,31 @@ std::string_view NameOf(Verdict verdict) {
   return "";
 }
 
+std::string_view NameOf(Luck luck) {
+  constexpr std::string_view kNames[] = {"no", "within", "too wide to tell", "unknown"};
+  return kNames[static_cast<std::size_t>(luck)];
+}
+
+bool Holds(Verdict verdict) {
+  return verdict == Verdict::kReproduced || verdict == Verdict::kEquivalent ||
+         verdict == Verdict::kDirectionHolds;
+}
+
 std::string NameWithLuck(const JudgedClaim& judged) {
-  return std::string(NameOf(judged.all.verdict)) + (judged.within_luck ? " (luck)" : "");
+  const char* luck = judged.luck == Luck::kWithin    ? " (luck)"
+                     : judged.luck == Luck::kTooWide ? " (luck?)"
+                                                     : "";
+  return std::string(NameOf(judged.all.verdict)) + luck;
 }
 
 char LetterOf(Verdict verdict) {
   switch (verdict) {
     case Verdict::kReproduced:
       return 'r';
+    case Verdict::kEquivalent:
+      return 'e';
+    case Verdict::kImprecise:
+      return 'c';
     case Verdict::kDirectionHolds:
       return 'h';
     case Verdict::kDiffers:
@@ -310,39 +306,53 @@ ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData
   }
   for (std::size_t i = 0; i < claims.size(); ++i) {
     study.claims[i].asks_networks = AsksNetworks(parsed[i], all);
-    study.claims[i].within_luck = IsWithinLuck(study.claims[i], parsed[i], all, arms);
+    study.claims[i].luck = LuckOf(study.claims[i]);
   }
+  MarkRepeats(study);
   return study;
 }
 
 std::map<Verdict, int> CountVerdicts(const ClaimStudy& study) {
   std::map<Verdict, int> counts;
-  for (const JudgedClaim& judged : study.claims) ++counts[judged.all.verdict];
+  for (const JudgedClaim& judged : study.claims)
+    if (judged.repeats.empty()) ++counts[judged.all.verdict];
   return counts;
 }
 
-int CountReproducedByConstruction(const ClaimStudy& study) {
+namespace {
+
+template <class Predicate>
+int CountDistinctIf(const ClaimStudy& study, const Predicate& predicate) {
   return static_cast<int>(
-      std::count_if(study.claims.begin(), study.claims.end(), [](const JudgedClaim& judged) {
-        const Claim& claim = judged.claim;
-        const bool built = claim.kind == "setup" || claim.source == "construction" ||
-                           (claim.kind == "value" && !PaperValueOf(claim));
-        return built && judged.all.verdict == Verdict::kReproduced;
-      }));
+      std::count_if(study.claims.begin(), study.claims.end(),
+                    [&](const JudgedClaim& judged) { return judged.repeats.empty() && predicate(judged); }));
 }
 
-int CountReproducedByCalibration(const ClaimStudy& study) {
-  static const std::set<std::string> targets = {"total_energy_kj", "msr_pct", "wer_pct", "mscs_pct"};
-  return static_cast<int>(
-      std::count_if(study.claims.begin(), study.claims.end(), [](const JudgedClaim& judged) {
-        return judged.claim.strategy == "rbs" && judged.claim.kind == "value" &&
-               targets.count(judged.claim.metric) > 0 && judged.all.verdict == Verdict::kReproduced;
-      }));
+}  // namespace
+
+int CountDistinct(const ClaimStudy& study) {
+  return CountDistinctIf(study, [](const JudgedClaim&) { return true; });
+}
+
+int CountReproducedByConstruction(const ClaimStudy& study) {
+  return CountDistinctIf(study, [](const JudgedClaim& judged) {
+    const Claim& claim = judged.claim;
+    const bool built = claim.kind == "setup" || claim.source == "construction" ||
+                       (claim.kind == "value" && !PaperValueOf(claim));
+    return built && judged.all.verdict == Verdict::kReproduced;
+  });
+}
+
+int CountCalibrated(const ClaimStudy& study) {
+  return CountDistinctIf(study, [](const JudgedClaim& judged) {
+    const std::string& arm = judged.claim.strategy;
+    return (arm == "rbs" || arm == "rbs-p85") && judged.claim.kind == "value" &&
+           judged.all.verdict == Verdict::kEquivalent;
+  });
 }
 
 int CountWithinLuck(const ClaimStudy& study) {
-  return static_cast<int>(std::count_if(study.claims.begin(), study.claims.end(),
-                                        [](const JudgedClaim& judged) { return judged.within_luck; }));
+  return CountDistinctIf(study, [](const JudgedClaim& judged) { return judged.luck == Luck::kWithin; });
 }
 
 std::map<Verdict, int> CountByNetwork(const JudgedClaim& claim) {

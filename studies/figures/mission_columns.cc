@@ -52,7 +52,8 @@ constexpr Column kColumns[] = {
 
 Json LookForward(const ArmData& arm) {
   Json column = Json::array();
-  for (const double accuracy : LookForwardAccuracies(arm.missions)) column.push_back(Rounded(100 * accuracy));
+  for (const double accuracy : LookForwardAccuracies(arm.missions, WorstErrorsOf(arm.missions)))
+    column.push_back(Rounded(100 * accuracy));
   return column;
 }
 

@@ -29,6 +29,11 @@ void CheckRecord(const ArmData& arm, const MissionRecord& m) {
   ED3R_CHECK(std::abs(parts - m.total_j) <= 1e-6 * (1 + m.total_j), here());
 }
 
+// Of the RC network's predictions in one mission that has any.
+double MeanErrorOf(const MissionRecord& m) {
+  return m.absolute_reward_error_sum / static_cast<double>(m.predicted_timesteps);
+}
+
 // What the missions contribute to one metric.
 struct Contributions {
   std::vector<double> part, whole;
@@ -80,13 +85,14 @@ double UpperLimit(const MetricDefinition& metric) {
   return metric.unit == "%" ? 1.0 : std::numeric_limits<double>::infinity();
 }
 
-MetricValue Evaluate(const MetricDefinition& metric, const std::vector<MissionRecord>& missions) {
+MetricValue Evaluate(const MetricDefinition& metric, const std::vector<MissionRecord>& missions,
+                     const WorstErrors& worst) {
   Contributions all = Collect(metric, missions);
   MetricValue result;
   result.n = static_cast<std::int64_t>(all.part.size());
   if (result.n == 0) return result;
   if (metric.estimate == Estimate::kLookForward) {
-    all.part = LookForwardAccuracies(missions);
+    all.part = LookForwardAccuracies(missions, worst);
     std::erase_if(all.part, [](double accuracy) { return std::isnan(accuracy); });
     all.whole.assign(all.part.size(), 1.0);
   }
@@ -114,11 +120,11 @@ std::vector<std::vector<MissionRecord>> ByNetwork(const std::vector<MissionRecor
 // networks' own values holds both kinds of chance; few networks can agree by accident, so it only ever widens the
 // interval over missions.
 void WidenByNetworks(const MetricDefinition& metric, const std::vector<std::vector<MissionRecord>>& groups,
-                     MetricValue& result) {
+                     const WorstErrors& worst, MetricValue& result) {
   if (std::isnan(result.lo)) return;
   std::vector<double> values;
   for (const std::vector<MissionRecord>& group : groups) {
-    const double value = Evaluate(metric, group).value;
+    const double value = Evaluate(metric, group, worst).value;
     if (!std::isnan(value)) values.push_back(value);
   }
   const Interval between = MeanInterval(values);
@@ -130,25 +136,29 @@ void WidenByNetworks(const MetricDefinition& metric, const std::vector<std::vect
 
 }  // namespace
 
-std::vector<double> LookForwardAccuracies(std::span<const MissionRecord> missions) {
-  std::map<std::int64_t, double> worst;
+WorstErrors WorstErrorsOf(std::span<const MissionRecord> missions) {
+  WorstErrors worst;
+  for (const MissionRecord& m : missions)
+    if (m.predicted_timesteps > 0) worst[m.network] = std::max(worst[m.network], MeanErrorOf(m));
+  return worst;
+}
+
+std::vector<double> LookForwardAccuracies(std::span<const MissionRecord> missions, const WorstErrors& worst) {
   std::vector<double> accuracies;
   for (const MissionRecord& m : missions) {
-    const bool any = m.predicted_timesteps > 0;
-    const double error = any ? m.absolute_reward_error_sum / static_cast<double>(m.predicted_timesteps)
-                             : std::numeric_limits<double>::quiet_NaN();
-    accuracies.push_back(error);
-    if (any) worst[m.network] = std::max(worst[m.network], error);
-  }
-  for (std::size_t i = 0; i < accuracies.size(); ++i)
-    if (!std::isnan(accuracies[i])) {
-      const double of_network = worst[missions[i].network];
-      accuracies[i] = of_network > 0 ? 1 - accuracies[i] / of_network : 1;
+    if (m.predicted_timesteps == 0) {
+      accuracies.push_back(std::numeric_limits<double>::quiet_NaN());
+      continue;
     }
+    const double of_network = worst.at(m.network);
+    accuracies.push_back(of_network > 0 ? 1 - MeanErrorOf(m) / of_network : 1);
+  }
   return accuracies;
 }
 
-ArmMetrics ComputeMetrics(const ArmData& arm) {
+namespace {
+
+ArmMetrics ComputeWith(const ArmData& arm, const WorstErrors& worst) {
   for (const MissionRecord& mission : arm.missions) CheckRecord(arm, mission);
   ArmMetrics metrics{.stage = arm.stage,
                      .name = arm.name,
@@ -159,10 +169,16 @@ ArmMetrics ComputeMetrics(const ArmData& arm) {
   const std::vector<std::vector<MissionRecord>> groups = ByNetwork(arm.missions);
   metrics.networks = groups.size() > 1 ? static_cast<int>(groups.size()) : 0;
   for (const MetricDefinition& metric : MetricDefinitions()) {
-    metrics.values.push_back(Evaluate(metric, arm.missions));
-    if (metrics.networks > 1) WidenByNetworks(metric, groups, metrics.values.back());
+    metrics.values.push_back(Evaluate(metric, arm.missions, worst));
+    if (metrics.networks > 1) WidenByNetworks(metric, groups, worst, metrics.values.back());
   }
   return metrics;
 }
+
+}  // namespace
+
+ArmMetrics ComputeMetrics(const ArmData& arm) { return ComputeWith(arm, WorstErrorsOf(arm.missions)); }
+
+ArmMetrics ComputeP85(const ArmData& arm) { return ComputeWith(P85Group(arm), WorstErrorsOf(arm.missions)); }
 
 }  // namespace ed3r

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,8 +41,16 @@ struct ArmMetrics {
 // whose parts sum up to the total.
 ArmMetrics ComputeMetrics(const ArmData& arm);
 
-// LF accuracy of each mission (R29): 1 - MAE / the largest MAE among the missions of its network; 1 where no prediction
-// was off, NaN where there was none.
-std::vector<double> LookForwardAccuracies(std::span<const MissionRecord> missions);
+// Of the arm's P85 group (P85Group). Its look-forward accuracy is relative to the worst mission of all that the arm's
+// networks flew, as the paper's must be: its P85 value is higher than the mean.
+ArmMetrics ComputeP85(const ArmData& arm);
+
+// The largest mean error of a mission, by network.
+using WorstErrors = std::map<std::int64_t, double>;
+WorstErrors WorstErrorsOf(std::span<const MissionRecord> missions);
+
+// LF accuracy of each mission (R29): 1 - MAE / the largest MAE of its network in `worst`; 1 where no prediction was off, NaN
+// where there was none.
+std::vector<double> LookForwardAccuracies(std::span<const MissionRecord> missions, const WorstErrors& worst);
 
 }  // namespace ed3r

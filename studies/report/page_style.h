@@ -35,8 +35,8 @@ figure{margin:1.6rem 0 2.4rem}
 img{max-width:100%;height:auto}
 figcaption{max-width:60rem;font-size:.9rem;color:#3c464d}
 .chips span,td span{display:inline-block;padding:.05rem .5rem;border-radius:.3rem;margin:.1rem .2rem .1rem 0;white-space:nowrap}
-.v-reproduced{background:#cfeadd}.v-direction{background:#e3f0d4}.v-differs{background:#f6d5cf}
-.v-not{background:#e9ecef}.v-paper{background:#fbe9c0}
+.v-reproduced,.v-equivalent{background:#cfeadd}.v-direction{background:#e3f0d4}.v-differs{background:#f6d5cf}
+.v-not,.v-imprecise{background:#e9ecef}.v-paper{background:#fbe9c0}
 .claims .text{text-align:left;white-space:normal;min-width:9rem}
 .claims small{display:block}
 summary{cursor:pointer;color:var(--blue)}

@@ -54,8 +54,8 @@ std::string VerdictSection(const ClaimStudy& study) {
       "</p>\n<p class=\"key\">Orders and comparisons are paired by scenario ({} of them) and resampled over "
       "{}; p is corrected "
       "by Holm over all of them. The column before the verdict: how many of the networks alone would have "
-      "given it. (luck): it differs, but no more than one experiment of the paper's size may by "
-      "chance.</p>\n",
+      "given it. (luck): it differs, but no more than one network on the "
+      "paper's number of missions may; (luck?): networks spread too widely to tell.</p>\n",
       study.scenarios,
       study.networks > 1 ? fmt::format("{} trained networks and missions", study.networks) : "missions");
   html +=

@@ -37,11 +37,12 @@ Report MakeReport(const RunResults& results) {
   for (const ArmData& arm : arms) {
     if (variants) report.told.push_back(ComputeMetrics(arm));
     report.generalisation.push_back(ComputeGeneralisation(arm));
-    p85.push_back(ComputeMetrics(P85Group(arm)));
+    p85.push_back(ComputeP85(arm));
   }
   if (!variants) report.told = report.arms;
   report.claims = variants ? report.variants.verdicts.front() : JudgeClaims(PaperClaims(), arms);
   report.convergence = Convergence(arms);
+  report.look_forward = LookForwardOf(arms);
   report.tables = MakeStudyTables(report.told, p85);
   return report;
 }
@@ -57,6 +58,8 @@ std::string ReportText(const Report& report) {
   text += ResultTable(report.told, PaperClaims());
   const std::string generalisation = GeneralisationTable(report.generalisation);
   if (!generalisation.empty()) text += '\n' + generalisation;
+  const std::string look_forward = LookForwardText(report.look_forward);
+  if (!look_forward.empty()) text += '\n' + look_forward;
   const std::string verdicts = VerdictText(report.claims);
   if (!verdicts.empty()) text += '\n' + verdicts;
   const std::string variants = VariantText(report.variants);
@@ -81,6 +84,7 @@ void WriteReport(const Report& report, const std::string& dir) {
   WriteWhole(base / "verdicts.csv", VerdictCsv(report.claims));
   if (report.claims.networks > 1) WriteWhole(base / "by_network.csv", ByNetworkCsv(report.claims));
   WriteWhole(base / "convergence.csv", ConvergenceCsv(report.convergence));
+  WriteWhole(base / "look_forward.csv", LookForwardCsv(report.look_forward));
   if (!report.variants.variants.empty()) {
     WriteWhole(base / "variants.csv", DifferenceCsv(report.variants));
     WriteWhole(base / "variant_verdicts.csv", VariantVerdictCsv(report.variants));

@@ -10,6 +10,7 @@
 #include "studies/claims/verdicts.h"
 #include "studies/metrics/arm.h"
 #include "studies/metrics/metrics.h"
+#include "studies/tables/look_forward_table.h"
 #include "studies/tables/result_table.h"
 #include "studies/tables/study_table.h"
 #include "studies/variants/variants.h"
@@ -32,18 +33,19 @@ struct Report {
   ClaimStudy claims;
   VariantStudy variants;
   std::vector<ConvergencePoint> convergence;  // of the arms told
+  std::vector<LookForward> look_forward;      // of the arms told that ask a network
 };
 
 Report MakeReport(const RunResults& results);
 
-// For a terminal of kTerminalWidth characters: heading, result table, generalisation table, verdicts on the
-// claims.
+// For a terminal of kTerminalWidth characters: heading, result table, generalisation table, look-forward errors, verdicts on
+// the claims.
 std::string ReportText(const Report& report);
 
 // {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson, "claims": as VerdictJson}.
 nlohmann::ordered_json ReportJson(const Report& report);
 
-// Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv, convergence.csv, where several networks flew
+// Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv, convergence.csv, look_forward.csv, where several networks flew
 // by_network.csv, where there are variants variants.csv and variant_verdicts.csv, and tables/ID.md, .tex, .csv and .json of each table into `dir`, which it makes
 // if it has to; each file is replaced whole or left as it was. Throws UserError when it cannot.
 void WriteReport(const Report& report, const std::string& dir);

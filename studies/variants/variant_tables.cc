@@ -140,10 +140,46 @@ std::string ChangeMatrix(const VariantStudy& study) {
              "", kTerminalWidth);
 }
 
+// In how many variants a claim holds, of those that measure it.
+struct Tally {
+  int holds = 0, measured = 0;
+};
+
+Tally TallyOf(const VariantStudy& study, std::size_t claim) {
+  Tally tally;
+  for (const ClaimStudy& verdicts : study.verdicts) {
+    const Verdict verdict = verdicts.claims[claim].all.verdict;
+    tally.measured += verdict != Verdict::kNotMeasured;
+    tally.holds += Holds(verdict);
+  }
+  return tally;
+}
+
+// Predicted claims that hold in every variant, and those that hold in none.
+std::string Everywhere(const VariantStudy& study) {
+  std::string in_all, in_none;
+  int all = 0, none = 0, counted = 0;
+  for (std::size_t i = 0; i < study.verdicts.front().claims.size(); ++i) {
+    const JudgedClaim& judged = study.verdicts.front().claims[i];
+    const Tally tally = TallyOf(study, i);
+    const bool built = judged.claim.kind == "setup" || judged.claim.source == "construction";
+    if (built || !judged.repeats.empty() || tally.measured < static_cast<int>(study.variants.size()))
+      continue;
+    ++counted;
+    const std::string line = Pad(judged.claim.id, kIdWidth + 1, Align::kLeft) +
+                             ClaimInWords(judged.claim, kTerminalWidth - kIdWidth - 1) + "\n";
+    if (tally.holds == tally.measured) in_all += line, ++all;
+    if (tally.holds == 0) in_none += line, ++none;
+  }
+  if (counted == 0) return "";
+  return fmt::format("\n{} of {} distinct claims hold in every variant:\n{}\n{} hold in none:\n{}", all,
+                     counted, in_all, none, in_none);
+}
+
 std::string ChangeTable(const VariantStudy& study) {
   if (!study.verdicts.front().HasArms()) return "";
   return fmt::format("\nClaims of the paper judged otherwise than under '{}'\n", study.variants[0]) +
-         ChangeCounts(study) + ChangeList(study) + ChangeMatrix(study);
+         ChangeCounts(study) + ChangeList(study) + ChangeMatrix(study) + Everywhere(study);
 }
 
 }  // namespace
@@ -162,14 +198,15 @@ std::string DifferenceCsv(const VariantStudy& study) {
 }
 
 std::string VariantVerdictCsv(const VariantStudy& study) {
-  std::string csv = "claim,strategy,metric,kind,compared";
+  std::string csv = "claim,strategy,metric,kind,compared,holds,variants";
   for (const std::string& variant : study.variants) csv += fmt::format(",{}", CsvField(variant));
   csv += "\n";
   if (study.verdicts.empty()) return csv;
   for (std::size_t i = 0; i < study.verdicts.front().claims.size(); ++i) {
     const Claim& claim = study.verdicts.front().claims[i].claim;
-    csv += fmt::format("{},{},{},{},{}", claim.id, CsvField(claim.strategy), claim.metric, claim.kind,
-                       CsvField(claim.comparison));
+    const Tally tally = TallyOf(study, i);
+    csv += fmt::format("{},{},{},{},{},{},{}", claim.id, CsvField(claim.strategy), claim.metric, claim.kind,
+                       CsvField(claim.comparison), tally.holds, tally.measured);
     for (const ClaimStudy& verdicts : study.verdicts)
       csv += fmt::format(",{}", NameWithLuck(verdicts.claims[i]));
     csv += "\n";

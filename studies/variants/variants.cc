@@ -106,7 +106,7 @@ void AddChanges(const ClaimStudy& base, const ClaimStudy& here, const std::strin
                 std::vector<VerdictChange>& changes) {
   for (std::size_t i = 0; i < base.claims.size(); ++i) {
     const Verdict was = base.claims[i].all.verdict, is = here.claims[i].all.verdict;
-    const bool luck = base.claims[i].within_luck || here.claims[i].within_luck;
+    const bool luck = base.claims[i].luck == Luck::kWithin || here.claims[i].luck == Luck::kWithin;
     if (was != is) changes.push_back({base.claims[i].claim.id, variant, was, is, luck});
   }
 }
@@ -134,9 +134,8 @@ std::vector<ArmData> ArmsOfVariant(std::span<const ArmData> arms, const std::str
 }
 
 bool VerdictChange::Contradicts() const {
-  const auto holds = [](Verdict v) { return v == Verdict::kReproduced || v == Verdict::kDirectionHolds; };
   if (within_luck) return false;
-  return (holds(base) && here == Verdict::kDiffers) || (base == Verdict::kDiffers && holds(here));
+  return (Holds(base) && here == Verdict::kDiffers) || (base == Verdict::kDiffers && Holds(here));
 }
 
 std::vector<ArmData> AsVariant(std::vector<ArmData> arms, const std::string& variant) {

@@ -70,8 +70,8 @@ std::string VariantText(const VariantStudy& study);
 // Columns arm,variant,metric,base,difference,lo,hi,pairs,base_networks,networks.
 std::string DifferenceCsv(const VariantStudy& study);
 
-// Columns claim,strategy,metric,kind,compared,VARIANT...: the verdict of every claim in every variant, "differs (luck)"
-// where it is within the luck of one experiment.
+// Columns claim,strategy,metric,kind,compared,holds,variants,VARIANT...: in how many variants the claim holds, of those that
+// measure it, and its verdict in each, "differs (luck)" where one network may differ so.
 std::string VariantVerdictCsv(const VariantStudy& study);
 
 }  // namespace ed3r

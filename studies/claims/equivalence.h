@@ -1,0 +1,39 @@
+// Is a number of ours the same as the paper's, in size? An equivalence test: the margin within which two numbers count as
+// the same is fixed beforehand, and the difference has an interval that holds the chance of both experiments, ours and
+// the paper's. A wide interval therefore never makes a number agree.
+//
+// Pure functions, any thread.
+#pragma once
+
+#include "studies/paper/claims.h"
+
+namespace ed3r {
+
+// 10 % of a size, 5 points of a percentage; or the claim's own tolerance, where its words are vaguer than that.
+inline constexpr double kMarginShare = 0.10, kMarginPoints = 5.0;
+double MarginOf(double paper, bool is_percentage);
+double MarginOf(const Claim& claim, double paper);
+bool IsPercentage(const Claim& claim);
+
+// Missions of an arm in the paper. What chance leaves open of its numbers is taken from the spread of our missions.
+inline constexpr double kPaperMissions = 850;
+
+enum class SizeVerdict {
+  kEquivalent,  // all of the interval lies within the margin
+  kImprecise,   // the interval holds no difference at all, but reaches beyond the margin
+  kDiffers      // the interval holds neither
+};
+
+// Ours minus the paper's.
+struct SizeDifference {
+  double margin = 0.0;
+  double lo = 0.0, hi = 0.0;  // 95 %
+  SizeVerdict verdict = SizeVerdict::kDiffers;
+};
+
+// `ours` in [lo, hi] (95 %; NaN: known exactly); `paper_sd`: standard error of the paper's value (NaN: none); `rounding`: half
+// of its last printed digit.
+SizeDifference CompareSizes(double ours, double lo, double hi, double paper, double paper_sd, double rounding,
+                            double margin);
+
+}  // namespace ed3r
