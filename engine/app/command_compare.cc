@@ -9,9 +9,9 @@
 
 #include "engine/app/commands.h"
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "engine/store/reader.h"
 #include "studies/metrics/number_text.h"
-#include "studies/report/files.h"
 #include "studies/report/load.h"
 #include "studies/report/provenance.h"
 #include "studies/variants/variants.h"
@@ -91,10 +91,10 @@ int Compare(const Options& options) {
   if (!options.out.empty()) {
     const fs::path out(options.out);
     MakeFolder(out);
-    WriteWhole(out / "compare.txt", text);
-    WriteWhole(out / "differences.csv", DifferenceCsv(study));
-    WriteWhole(out / "verdicts.csv", VariantVerdictCsv(study));
-    WriteWhole(out / "manifest.json", ManifestOf(options.dirs, labels).dump(2) + "\n");
+    WriteFile(out / "compare.txt", text);
+    WriteFile(out / "differences.csv", DifferenceCsv(study));
+    WriteFile(out / "verdicts.csv", VariantVerdictCsv(study));
+    WriteFile(out / "manifest.json", ManifestOf(options.dirs, labels).dump(2) + "\n");
   }
   fmt::print("{}", options.json ? JsonOf(study).dump(2) + "\n" : text);
   return kDone;
@@ -109,8 +109,10 @@ Command AddCompare(CLI::App& program) {
       "Runs of the same arms, each compared with the first: differences paired by scenario, and the paper's "
       "claims that are judged otherwise");
   parser->add_option("DIR", options->dirs, "Run directories")->required();
-  parser->add_option("--out", options->out,
-                     "Folder for compare.txt, differences.csv, verdicts.csv and manifest.json");
+  parser
+      ->add_option("--out", options->out,
+                   "Folder for compare.txt, differences.csv, verdicts.csv and manifest.json")
+      ->check(NotEmpty());
   parser->add_flag("--json", options->json, "Print JSON");
   parser->footer(
       "Runs of one seed meet the same scenarios; runs of different seeds are compared as independent draws "

@@ -138,7 +138,8 @@ Command AddExplain(CLI::App& program) {
   parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. ed3r-75/12; missions count from 0")
       ->required();
   parser->add_option("--step", options->step, "Timestep; timesteps count from 1")->required();
-  parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache");
+  parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache")
+      ->check(NotEmpty());
   parser->add_flag("--json", options->json, "Print JSON");
   return {parser, [options] { return Explain(*options); }};
 }

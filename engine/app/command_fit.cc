@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 
 #include "engine/app/commands.h"
 #include "engine/app/perception_looks.h"
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "studies/figures/draw.h"
 #include "studies/fit/fit.h"
 #include "studies/fit/report.h"
@@ -35,22 +35,15 @@ int SelfCheck(const Options& options) {
   return kDone;
 }
 
-void WriteText(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw UserError(file.string() + ": cannot be written");
-}
-
 int FitPerception(const Options& options) {
   const PerceptionLooks found = LooksOfRun(options.perception);
   const ProfileFit fit = FitProfile(found.looks, found.configured);
   if (!options.out.empty()) {
     const std::filesystem::path folder(options.out);
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    WriteText(folder / "perception.yaml", ProfileFitYaml(fit, options.perception));
-    WriteText(folder / "perception.json", ProfileFitJson(fit).dump(2) + "\n");
-    WriteText(folder / "looks.csv", LooksCsv(found.looks, fit));
+    MakeFolder(folder);
+    WriteFile(folder / "perception.yaml", ProfileFitYaml(fit, options.perception));
+    WriteFile(folder / "perception.json", ProfileFitJson(fit).dump(2) + "\n");
+    WriteFile(folder / "looks.csv", LooksCsv(found.looks, fit));
   }
   fmt::print("{}\n", options.json ? ProfileFitJson(fit).dump(2) : ProfileFitText(fit));
   return kDone;
@@ -99,9 +92,11 @@ Command AddFit(CLI::App& program) {
       ->excludes("LOG");
   parser->add_option("--set", options->set, "robot.KEY=VALUE of the airframe that flew")
       ->allow_extra_args(false);
-  parser->add_option("--out", options->out,
-                     "Folder for report, fitted.yaml, flights.csv and rows.csv; with --perception for "
-                     "perception.yaml, perception.json, looks.csv");
+  parser
+      ->add_option("--out", options->out,
+                   "Folder for report, fitted.yaml, flights.csv and rows.csv; with --perception for "
+                   "perception.yaml, perception.json, looks.csv")
+      ->check(NotEmpty());
   CLI::Option* check =
       parser
           ->add_option(

@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include "engine/app/commands.h"
 #include "engine/app/settings.h"
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "engine/core/sha256.h"
 #include "engine/core/version.h"
 #include "engine/perception/render/data_set.h"
@@ -54,16 +54,10 @@ void CheckCount(const char* option, int value, int min, int max) {
     throw UserError(fmt::format("{}: {} is not allowed; allowed: {} .. {}", option, value, min, max));
 }
 
-std::ofstream Create(const fs::path& path) {
-  std::ofstream file(path, std::ios::binary);
-  if (!file) throw UserError(path.string() + ": cannot be written");
-  return file;
-}
-
 // The frames as one NumPy array (NPY 1.0, uint8, N x H x W x 3, C order), written as they come.
 class FrameFile {
  public:
-  FrameFile(const fs::path& path, int frames, PictureSize size) : path_(path), file_(Create(path)) {
+  FrameFile(const fs::path& path, int frames, PictureSize size) : file_(path) {
     std::string header = fmt::format("{{'descr': '|u1', 'fortran_order': False, 'shape': ({}, {}, {}, 3), }}",
                                      frames, size.height_px, size.width_px);
     // Magic, version and length take 10 bytes; the data begin at a multiple of 64.
@@ -78,18 +72,16 @@ class FrameFile {
   void Append(const FrameStack& stack) { Write(stack.rgb.data(), stack.rgb.size()); }
   // SHA-256 of the whole file.
   std::string Close() {
-    file_.close();
-    if (!file_) throw UserError(path_.string() + ": cannot be written; is the disk full?");
+    file_.Commit();
     return hash_.Hex();
   }
 
  private:
   void Write(const void* data, std::size_t bytes) {
-    file_.write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
+    file_.Write({static_cast<const char*>(data), bytes});
     hash_.Update(data, bytes);
   }
-  fs::path path_;
-  std::ofstream file_;
+  AtomicFile file_;
   Sha256 hash_;
 };
 
@@ -111,15 +103,12 @@ class DataSet {
 
   void Write() {
     const fs::path out(options_.out);
-    std::error_code error;
-    fs::create_directories(out, error);
-    if (error) throw UserError(fmt::format("--out: {}: {}", options_.out, error.message()));
+    MakeFolder(out);
     FrameFile frames(out / "frames.npy", options_.views * options_.frames, size_);
-    std::ofstream labels = Create(out / "labels.csv");
-    labels << "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label,tilt_deg,distractors\n";
+    std::string labels =
+        "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label,tilt_deg,distractors\n";
     for (int view = 0; view < options_.views; ++view) WriteView(view, frames, labels);
-    labels.close();
-    if (!labels) throw UserError((out / "labels.csv").string() + ": cannot be written; is the disk full?");
+    WriteFile(out / "labels.csv", labels);
     WriteManifest(out, frames.Close());
     fmt::print(
         "{}: frames.npy ({} views x {} frames, {} x {} px), labels.csv, manifest.json; fire or smoke in {} "
@@ -128,7 +117,7 @@ class DataSet {
   }
 
  private:
-  void WriteView(int view, FrameFile& frames, std::ofstream& labels) {
+  void WriteView(int view, FrameFile& frames, std::string& labels) {
     const auto number = static_cast<std::uint32_t>(view);
     const ViewPlan plan = PlanView(scenes_, config_, options_.seed, number);
     const auto world = static_cast<std::size_t>(plan.world);
@@ -142,7 +131,7 @@ class DataSet {
     const Scene& scene = *worlds_[world];
     const std::string props = PropsInView(renderer, scene, plan.pose, config_.sensing);
     for (int i = 0; i < options_.frames; ++i)
-      labels << fmt::format("{},{},{},\"{}\",\"{}\",{:.1f},{},{},{:.3f},{},{:.1f},{}\n",
+      labels += fmt::format("{},{},{},\"{}\",\"{}\",{:.1f},{},{},{:.3f},{},{:.1f},{}\n",
                             view * options_.frames + i, view, numbers_[static_cast<std::size_t>(i)],
                             scene.Name(), scene.Sites()[static_cast<std::size_t>(plan.site)].name,
                             truth.distance_m, truth.fire_px, truth.smoke_px, truth.occluded, fire ? 1 : 0,
@@ -173,7 +162,7 @@ class DataSet {
     const CodeVersion code = ThisCode();
     manifest["code"] = {{"source_hash", code.source_hash}, {"commit", code.commit}, {"dirty", code.dirty}};
     manifest["frames_npy_sha256"] = sha256;
-    Create(out / "manifest.json") << manifest.dump(2) << "\n";
+    WriteFile(out / "manifest.json", manifest.dump(2) + "\n");
   }
 
   const Options& options_;
@@ -198,7 +187,8 @@ Command AddFrames(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* parser = program.add_subcommand("frames", "Renders a labelled data set for training detectors");
   parser->add_option("--out", options->out, "Folder for frames.npy, labels.csv, manifest.json and pictures")
-      ->required();
+      ->required()
+      ->check(NotEmpty());
   parser
       ->add_option("--world", options->worlds,
                    "World file (YAML), repeatable; default: the two training worlds")

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -11,6 +10,7 @@
 #include "engine/app/stored_run.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "engine/store/digest.h"
 #include "engine/world/map_picture.h"
 #include "studies/metrics/number_text.h"
@@ -27,17 +27,17 @@ struct Options {
 class TraceFile : public TraceSink {
  public:
   explicit TraceFile(const std::filesystem::path& path) : file_(path) {
-    if (!file_) throw UserError(path.string() + ": cannot be written");
-    file_ << "timestep,time_s,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps,yaw_rad\n";
+    file_.Write("timestep,time_s,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps,yaw_rad\n");
   }
   void Record(const TraceSample& s) override {
-    file_ << fmt::format("{},{},{},{},{},{},{},{},{}\n", s.timestep, s.time_s, s.position_m.x(),
-                         s.position_m.y(), s.position_m.z(), s.velocity_mps.x(), s.velocity_mps.y(),
-                         s.velocity_mps.z(), s.yaw_rad);
+    file_.Write(fmt::format("{},{},{},{},{},{},{},{},{}\n", s.timestep, s.time_s, s.position_m.x(),
+                            s.position_m.y(), s.position_m.z(), s.velocity_mps.x(), s.velocity_mps.y(),
+                            s.velocity_mps.z(), s.yaw_rad));
   }
+  void Commit() { file_.Commit(); }
 
  private:
-  std::ofstream file_;
+  AtomicFile file_;
 };
 
 std::string CellOf(std::string_view, double value) { return CsvNumber(value); }
@@ -48,21 +48,20 @@ std::string CellOf(std::string_view column, std::int64_t value) {
 }
 
 void WriteSteps(const MissionRecord& record, const std::filesystem::path& path) {
-  std::ofstream file(path);
-  std::string separator;
+  std::string file, separator;
   const TimestepRecord columns;
   TimestepRecord::Describe(columns, [&](std::string_view name, const auto&) {
-    file << separator << name;
+    file.append(separator).append(name);
     separator = ",";
   });
   for (const TimestepRecord& step : record.steps) {
     separator = "\n";
     TimestepRecord::Describe(step, [&](std::string_view name, const auto& value) {
-      file << separator << CellOf(name, value);
+      file.append(separator).append(CellOf(name, value));
       separator = ",";
     });
   }
-  file << "\n";
+  WriteFile(path, file + "\n");
 }
 
 void CheckFrames(const std::vector<int>& frames, std::int64_t timesteps) {
@@ -85,12 +84,13 @@ int Replay(const Options& options) {
   MissionTask task = run.Task(id);
   std::optional<MissionPictures> pictures;
   if (!options.frames.empty()) pictures.emplace(task);
-  std::filesystem::create_directories(out);
+  MakeFolder(out);
 
   TraceFile trace(out / "trace.csv");
   task.trace = &trace;
   const MissionRecord flown = FlyMission(task);
   const bool identical = DigestOf(flown) == DigestOf(stored.record);
+  trace.Commit();
   WriteSteps(flown, out / "timesteps.csv");
   std::vector<Eigen::Vector3d> path_m = {{flown.start_x_m, flown.start_y_m, flown.start_z_m}};
   for (const TimestepRecord& step : flown.steps) path_m.emplace_back(step.x_m, step.y_m, step.z_m);
@@ -116,7 +116,8 @@ Command AddReplay(CLI::App& program) {
   parser->add_option("DIR", options->dir, "Run directory")->required();
   parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. rbs/12; missions count from 0")
       ->required();
-  parser->add_option("--out", options->out, "Folder for trace and map; default DIR/replay/MISSION");
+  parser->add_option("--out", options->out, "Folder for trace and map; default DIR/replay/MISSION")
+      ->check(NotEmpty());
   parser
       ->add_option("--frames", options->frames,
                    "Also pictures of what the camera saw in these timesteps, from 1; e.g. 1,4 or 1 4")
@@ -124,7 +125,8 @@ Command AddReplay(CLI::App& program) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("K[,K...]");
-  parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache");
+  parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache")
+      ->check(NotEmpty());
   return {parser, [options] { return Replay(*options); }};
 }
 

@@ -74,13 +74,17 @@ namespace {
 
 struct ReportOptions {
   std::string dir, out;
-  bool json = false, no_figures = false;
+  bool json = false, no_figures = false, force = false;
 };
 
 int MakeReportOf(const ReportOptions& options) {
   const RunResults results = LoadRun(options.dir);
   const Report report = MakeReport(results);
-  FolderOptions folder{.dir = options.dir, .out = options.out, .figures = !options.no_figures, .command = ""};
+  FolderOptions folder{.dir = options.dir,
+                       .out = options.out,
+                       .figures = !options.no_figures,
+                       .force = options.force,
+                       .command = ""};
   folder.command = "ed3r report " + options.dir + (options.out.empty() ? "" : " --out " + options.out);
   if (folder.out.empty()) folder.out = options.dir + "/report";
   const FolderResult written = WriteReportFolder(report, results, folder);
@@ -103,7 +107,8 @@ Command AddReport(CLI::App& program) {
   CLI::App* parser = program.add_subcommand(
       "report", "Tables, figures and index.html of a run beside the paper's values, written to DIR/report");
   parser->add_option("DIR", options->dir, "Run directory")->required();
-  parser->add_option("--out", options->out, "Folder to write to; default DIR/report");
+  parser->add_option("--out", options->out, "Folder to write to; default DIR/report")->check(NotEmpty());
+  parser->add_flag("--force", options->force, "Write into a folder that is neither empty nor a report, too");
   parser->add_flag("--no-figures", options->no_figures,
                    "Draw nothing (no Python); the figures' data are still written");
   parser->add_flag("--json", options->json, "Print JSON");

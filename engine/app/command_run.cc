@@ -83,9 +83,12 @@ Command AddRun(CLI::App& program) {
   CLI::App* parser = program.add_subcommand(
       "run", "Flies a sweep and prints its table; the same command again continues where it stopped");
   options->sweep.AddTo(*parser);
-  parser->add_option("--out", options->out, "Run directory; default results/runs/<sweep name>");
-  parser->add_option("--cache", options->cache,
-                     "Where trained networks are kept for all sweeps; default results/cache");
+  parser->add_option("--out", options->out, "Run directory; default results/runs/<sweep name>")
+      ->check(NotEmpty());
+  parser
+      ->add_option("--cache", options->cache,
+                   "Where trained networks are kept for all sweeps; default results/cache")
+      ->check(NotEmpty());
   parser->add_option("--threads", options->threads, "Threads; 0, the default: all processors");
   parser->add_option("--shard", options->shard,
                      "I/N: fly one of N parts, e.g. 1/4, counted from 1 to N or from 0 to N-1 (0/N is N/N); "

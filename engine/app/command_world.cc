@@ -120,8 +120,9 @@ Command AddWorld(CLI::App& program) {
   CLI::App* parser = program.add_subcommand(
       "world", "Builds a world file, says what is in it, measures its sites and draws its map");
   parser->add_option("FILE", options->file, "World file (YAML)")->required();
-  parser->add_option("--picture", options->picture,
-                     "Draw the map (relief, trees, sites, stations) to this PNG");
+  parser
+      ->add_option("--picture", options->picture, "Draw the map (relief, trees, sites, stations) to this PNG")
+      ->check(NotEmpty());
   parser->add_flag("--json", options->json, "Print JSON");
   return {parser, [options] {
             const std::shared_ptr<const Scene> scene = Scene::Load(options->file);

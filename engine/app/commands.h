@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace ed3r {
@@ -31,6 +32,13 @@ Command AddPhysics(CLI::App& program);
 Command AddWorld(CLI::App& program);
 Command AddFrames(CLI::App& program);
 Command AddDoctor(CLI::App& program);
+
+// For options that take a path: an empty one is a variable that was not set.
+inline CLI::Validator NotEmpty() {
+  return CLI::Validator(
+      [](std::string& text) { return std::string(text.empty() ? "'' is not allowed; allowed: a path" : ""); },
+      "");
+}
 
 constexpr int kDone = 0;
 constexpr int kFailedInside = 1;

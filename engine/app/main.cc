@@ -1,12 +1,24 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <system_error>
 
 #include "engine/app/commands.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
+#include "engine/core/interrupt.h"
+#include "engine/core/message.h"
+#include "engine/core/utf8.h"
 #include "engine/core/version.h"
+#include "engine/store/sqlite.h"
 #include "kernels/simd_level.h"
 
 namespace ed3r {
@@ -34,9 +46,13 @@ std::string Refusal(const CLI::App& program, const CLI::ParseError& error) {
                      suggestion.empty() ? "; 'ed3r --help' lists the commands" : suggestion);
 }
 
-int Main(int argc, char** argv) {
-  CLI::App program(
-      "ed3r: flies declared studies of energy-aware wildfire detection and reports them with intervals");
+// Arguments end up in notes, tables and JSON, which are UTF-8.
+void CheckArguments(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (!IsUtf8(argv[i])) throw UserError(fmt::format("ed3r: argument {} is not UTF-8 text", i));
+}
+
+int RunCommand(int argc, char** argv, CLI::App& program) {
   program.name("ed3r");
   program.require_subcommand(1);
   const CodeVersion code = ThisCode();
@@ -44,27 +60,67 @@ int Main(int argc, char** argv) {
                                                     code.dirty ? "+changes" : "", code.source_hash));
   const std::vector<Command> commands = AddCommands(program);
   try {
+    CheckArguments(argc, argv);
     program.parse(argc, argv);
     for (const Command& command : commands)
       if (command.parser->parsed()) return command.run();
     return kBadInput;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
-    fmt::print(stderr, "ed3r: {}\n", Refusal(program, error));
+    fmt::print(stderr, "{}\n", OneLine("ed3r: " + Refusal(program, error)));
     return kBadInput;
+  }
+}
+
+int Main(int argc, char** argv) {
+  CLI::App program(
+      "ed3r: flies declared studies of energy-aware wildfire detection and reports them with intervals");
+  try {
+    return RunCommand(argc, argv, program);
   } catch (const SimdLevelError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return kBadInput;
   } catch (const UserError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    fmt::print(stderr, "{}\n", OneLine(error.what()));
     return kBadInput;
+  } catch (const std::filesystem::filesystem_error& error) {
+    fmt::print(stderr, "{}\n",
+               OneLine(fmt::format("{}: {}", error.path1().string(), error.code().message())));
+    return kBadInput;
+  } catch (const std::system_error& error) {
+    if (std::ferror(stdout) == 0)
+      fmt::print(stderr, "{}\n", OneLine(fmt::format("ed3r: failed inside: {}", error.what())));
+    return kFailedInside;  // what could not be printed is told at the end
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "ed3r: out of memory\n");
+    return kFailedInside;
+  } catch (const StoreError& error) {
+    fmt::print(stderr, "{}\n", OneLine(error.what()));
+    return kFailedInside;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "ed3r: failed inside: {}\n", error.what());
+    fmt::print(stderr, "{}\n", OneLine(fmt::format("ed3r: failed inside: {}", error.what())));
     return kFailedInside;
   }
+}
+
+// What was printed must have arrived, or the status says so.
+int Delivered(int status) {
+  std::cout.flush();
+  errno = 0;
+  const bool flushed = std::fflush(stdout) == 0;
+  const int error = errno;
+  if (flushed && std::ferror(stdout) == 0 && std::cout) return status;
+  fmt::print(stderr, "ed3r: standard output cannot be written{}{}\n", error == 0 ? "" : ": ",
+             error == 0 ? "" : std::strerror(error));
+  return status == kDone ? kFailedInside : status;
 }
 
 }  // namespace
 }  // namespace ed3r
 
-int main(int argc, char** argv) { return ed3r::Main(argc, argv); }
+int main(int argc, char** argv) {
+  // A file that grows beyond its limit is an error of the write, told like any other.
+  std::signal(SIGXFSZ, SIG_IGN);
+  ed3r::EndOnInterrupt(ed3r::kInterrupted);
+  return ed3r::Delivered(ed3r::Main(argc, argv));
+}

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <iterator>
+
 #include "engine/agents/decisions.h"
 #include "engine/app/stored_run.h"
 #include "engine/core/check.h"
@@ -13,6 +15,9 @@ namespace {
 // As the mission saw them: from where it stood after the move of each timestep.
 void AddMission(const StoredMission& mission, const Scene& scene, const Config& config, std::uint64_t seed,
                 std::vector<PeriodLook>& looks) {
+  if (mission.record.site < 0 || mission.record.site >= std::ssize(scene.Sites()))
+    throw UserError(fmt::format("mission {}: the store is damaged (fire site {} of {})", mission.id.mission,
+                                mission.record.site, scene.Sites().size()));
   const FireView fire(scene, static_cast<int>(mission.record.site));
   const std::vector<Distractor> distractors =
       DrawDistractors(scene, config.perception, seed, static_cast<std::uint32_t>(mission.record.scenario));

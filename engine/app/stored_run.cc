@@ -9,6 +9,7 @@
 #include "engine/agents/strategy.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
+#include "engine/core/utf8.h"
 #include "engine/core/version.h"
 
 namespace ed3r {
@@ -69,7 +70,9 @@ std::string UnknownMission(const std::string& mission, const std::string& arm, b
 }  // namespace
 
 std::map<std::string, std::string> NotesOf(const SweepArguments& arguments) {
-  return {{"sweep file", std::filesystem::absolute(arguments.file).lexically_normal().string()},
+  const std::string file = std::filesystem::absolute(arguments.file).lexically_normal().string();
+  if (!IsUtf8(file)) throw UserError(fmt::format("{}: its path is not UTF-8 text", file));
+  return {{"sweep file", file},
           {"sweep --set", JoinedLines(arguments.set)},
           {"sweep --seed", arguments.seed},
           {"sweep --missions", JoinedLines(arguments.missions)}};

@@ -16,6 +16,10 @@ class Interrupted : public std::exception {
 // One flag per process; lock-free, so that the signal handler may set it.
 std::atomic<bool>& InterruptFlag();
 
+// For the time before work that looks at the flag begins: SIGINT and SIGTERM end the process with one line on standard
+// error and this status.
+void EndOnInterrupt(int status);
+
 // SIGINT and SIGTERM (Slurm's notice before a time limit) set the flag. The handler serves once per signal:
 // a second Ctrl-C ends the process at once.
 void InstallInterruptHandler();

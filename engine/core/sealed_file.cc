@@ -1,16 +1,11 @@
 #include "engine/core/sealed_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <array>
 #include <bit>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "engine/core/sha256.h"
 
 namespace ed3r {
@@ -38,65 +33,6 @@ std::string Digest(std::string_view bytes) {
   Sha256 hash;
   hash.Update(bytes);
   return hash.Hex();
-}
-
-[[noreturn]] void FailToWrite(const std::string& path, int error) {
-  throw UserError(fmt::format("{}: cannot write: {}", path, std::strerror(error)));
-}
-
-// Flushes to disk before closing; 0 or the error.
-int WriteAndSync(int file, std::string_view bytes) {
-  int error = 0;
-  while (!bytes.empty() && error == 0) {
-    const ssize_t written = ::write(file, bytes.data(), bytes.size());
-    if (written >= 0)
-      bytes.remove_prefix(static_cast<std::size_t>(written));
-    else if (errno != EINTR)
-      error = errno;
-  }
-  if (error == 0 && ::fsync(file) != 0) error = errno;
-  if (::close(file) != 0 && error == 0) error = errno;
-  return error;
-}
-
-// A new file beside `path`, not shared with another process or thread that writes the same place.
-int OpenTemporary(const std::string& path, std::string& temporary) {
-  for (int attempt = 0;; ++attempt) {
-    temporary = fmt::format("{}.{}-{}.tmp", path, ::getpid(), attempt);
-    const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file >= 0) return file;
-    if (errno != EEXIST || attempt == 1000) FailToWrite(path, errno);
-  }
-}
-
-// The new name itself must survive a crash. A file system that cannot sync a directory is no reason to fail.
-void SyncDirectoryOf(const std::string& path) {
-  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
-  const int directory = ::open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory < 0) return;
-  ::fsync(directory);
-  ::close(directory);
-}
-
-std::string ReadWholeFile(const std::string& path, const SealedFormat& format) {
-  const auto fail = [&](int error) {
-    throw UserError(fmt::format("{}: cannot read this {}: {}", path, format.what, std::strerror(error)));
-  };
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) fail(errno);
-  std::string bytes;
-  std::array<char, 65536> block;
-  int error = 0;
-  for (ssize_t size = 1; size != 0 && error == 0;) {
-    size = ::read(file, block.data(), block.size());
-    if (size > 0)
-      bytes.append(block.data(), static_cast<std::size_t>(size));
-    else if (size < 0 && errno != EINTR)
-      error = errno;
-  }
-  ::close(file);
-  if (error != 0) fail(error);
-  return bytes;
 }
 
 }  // namespace
@@ -165,16 +101,7 @@ void WriteSealedFile(const std::string& path, const SealedFormat& format, std::s
   Append(bytes, static_cast<std::uint64_t>(payload.size()));
   bytes += payload;
   bytes += Digest(bytes);
-
-  std::string temporary;
-  const int file = OpenTemporary(path, temporary);
-  int error = WriteAndSync(file, bytes);
-  if (error == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
-  if (error != 0) {
-    ::unlink(temporary.c_str());
-    FailToWrite(path, error);
-  }
-  SyncDirectoryOf(path);
+  WriteFile(path, bytes);
 }
 
 std::string OpenSealed(std::string_view all, const std::string& name, const SealedFormat& format) {
@@ -199,7 +126,10 @@ std::string OpenSealed(std::string_view all, const std::string& name, const Seal
 }
 
 std::string ReadSealedFile(const std::string& path, const SealedFormat& format) {
-  return OpenSealed(ReadWholeFile(path, format), path, format);
+  std::string bytes, why;
+  if (!TryReadFile(path, kMaxModelBytes, bytes, why))
+    throw UserError(fmt::format("{}: cannot read this {}: {}", path, format.what, why));
+  return OpenSealed(bytes, path, format);
 }
 
 }  // namespace ed3r

@@ -1,7 +1,7 @@
 // Small binary files that are whole or refused: magic, version, payload, SHA-256 over all of it.
 //
-// Numbers are little-endian whatever the CPU. Files are written beside their place, flushed to disk and
-// renamed, so that a reader sees the old file or the new one, also after a crash.
+// Numbers are little-endian whatever the CPU. Written and read as file.h says: a reader sees the old file or the new
+// one, also after a crash.
 #pragma once
 
 #include <cstdint>

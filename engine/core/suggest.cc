@@ -24,9 +24,12 @@ std::size_t EditDistance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string NearestWord(std::string_view word, const std::vector<std::string>& candidates) {
+  constexpr std::size_t kLongest = 100;  // the distance takes time in proportion to both lengths
+  if (word.size() > kLongest) return "";
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
+    if (candidate.size() > kLongest) continue;
     const bool same_leaf = candidate.size() > word.size() + 1 && candidate.ends_with(word) &&
                            candidate[candidate.size() - word.size() - 1] == '.';
     const std::size_t distance = same_leaf ? 0 : EditDistance(word, candidate);

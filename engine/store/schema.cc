@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cstdint>
+#include <iterator>
+#include <limits>
 #include <vector>
 
 #include "engine/core/check.h"
@@ -87,24 +91,62 @@ void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& l
       fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kSchemaVersion));
 }
 
+namespace {
+
+[[noreturn]] void Damaged(const Connection& database, const std::string& what) {
+  throw UserError(fmt::format("{}: the file is damaged ({})", database.file(), what));
+}
+
+std::string RecipeValue(Connection& database, const char* key) {
+  Statement select(database, "SELECT value FROM recipe WHERE key = ?");
+  select.Bind(0, std::string_view(key));
+  if (!select.Step()) Damaged(database, fmt::format("its recipe has no '{}'", key));
+  return select.Text(0);
+}
+
+std::uint64_t Seed(Connection& database) {
+  const std::string text = RecipeValue(database, "seed");
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc() || end != text.data() + text.size())
+    Damaged(database, fmt::format("its seed is '{}'", text));
+  return seed;
+}
+
+}  // namespace
+
 Recipe ReadRecipe(Connection& database) {
   Recipe recipe;
-  recipe.plan_text = database.Text("SELECT value FROM recipe WHERE key = 'plan'");
-  recipe.code_version = database.Text("SELECT value FROM recipe WHERE key = 'code_version'");
+  recipe.plan_text = RecipeValue(database, "plan");
+  recipe.code_version = RecipeValue(database, "code_version");
   Statement inputs(database, "SELECT file, fingerprint FROM worlds");
   while (inputs.Step()) recipe.inputs[inputs.Text(0)] = inputs.Text(1);
   return recipe;
 }
 
+// Stages and arms are counted from 0 without gaps, arms stage by stage: everything else indexes by them.
 RunLayout ReadLayout(Connection& database) {
+  constexpr std::int64_t kMaxMissions = 10'000'000;
   RunLayout layout;
-  layout.name = database.Text("SELECT value FROM recipe WHERE key = 'sweep'");
-  layout.seed = std::stoull(database.Text("SELECT value FROM recipe WHERE key = 'seed'"));
-  Statement stages(database, "SELECT name, missions FROM stages ORDER BY stage");
-  while (stages.Step()) layout.stages.push_back({stages.Text(0), stages.Int(1), {}});
-  Statement runs(database, "SELECT stage, name, first_scenario FROM runs ORDER BY run");
-  while (runs.Step())
-    layout.stages.at(static_cast<std::size_t>(runs.Int(0))).arms.push_back({runs.Text(1), runs.Int(2)});
+  layout.name = RecipeValue(database, "sweep");
+  layout.seed = Seed(database);
+  Statement stages(database, "SELECT name, missions, stage FROM stages ORDER BY stage");
+  while (stages.Step()) {
+    if (stages.Int(2) != std::ssize(layout.stages) || stages.Int(1) < 0 || stages.Int(1) > kMaxMissions)
+      Damaged(database, fmt::format("its stage {} of {} missions", stages.Int(2), stages.Int(1)));
+    layout.stages.push_back({stages.Text(0), stages.Int(1), {}});
+  }
+  Statement runs(database, "SELECT stage, name, first_scenario, arm, run FROM runs ORDER BY run");
+  std::int64_t run = 0, last_stage = 0;
+  while (runs.Step()) {
+    const std::int64_t stage = runs.Int(0), first_scenario = runs.Int(2);
+    const bool known = stage >= last_stage && stage < std::ssize(layout.stages);
+    if (!known || runs.Int(4) != run++ || runs.Int(3) != std::ssize(layout.stages[stage].arms) ||
+        first_scenario < 0 || first_scenario > std::numeric_limits<std::uint32_t>::max())
+      Damaged(database, fmt::format("its arm {} of stage {}", runs.Int(3), stage));
+    layout.stages[stage].arms.push_back({runs.Text(1), first_scenario});
+    last_stage = stage;
+  }
   return layout;
 }
 

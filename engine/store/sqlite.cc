@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "engine/core/check.h"
+#include "engine/core/file.h"
+#include "engine/core/utf8.h"
 
 namespace ed3r {
 namespace {
@@ -25,12 +27,23 @@ int OpenFlags(Connection::Access access) {
   return 0;
 }
 
+// SQLite would wait for a pipe, and take a folder for a locked file.
+void CheckFiles(const std::string& file) {
+  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
+    std::error_code error;  // another process may be making or removing them
+    const std::filesystem::file_status found = std::filesystem::status(file + suffix, error);
+    if (!std::filesystem::exists(found) || std::filesystem::is_regular_file(found)) continue;
+    throw UserError(fmt::format("{}{}: cannot be read: {}", file, suffix, WhyNoRegularFile(file + suffix)));
+  }
+}
+
 }  // namespace
 
 void Connection::Close::operator()(sqlite3* database) const { sqlite3_close_v2(database); }
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
 Connection::Connection(const std::string& file, Access access) : file_(file) {
+  CheckFiles(file);
   sqlite3* database = nullptr;
   // An absolute path, because Debian's SQLite takes a name that begins with "file:" for a URI.
   const std::string path = std::filesystem::absolute(file).string();
@@ -79,13 +92,20 @@ void Connection::Fail() const {
       throw UserError(fmt::format("{}: cannot be opened for this ({})", file_, reason));
     case SQLITE_IOERR:  // the extended code tells reading from writing and syncing
       throw StoreError(
-          fmt::format("{}: {} (SQLite code {})", file_, reason, sqlite3_extended_errcode(database_.get())));
+          fmt::format("{}: {} (SQLite code {}); what is stored is kept, and the same command continues",
+                      file_, reason, sqlite3_extended_errcode(database_.get())));
     case SQLITE_FULL:
+      throw StoreError(fmt::format(
+          "{}: {}; what is stored is kept: make room, and the same command continues", file_, reason));
     case SQLITE_NOMEM:
     case SQLITE_TOOBIG:
     case SQLITE_PROTOCOL:
     case SQLITE_NOLFS:
       throw StoreError(fmt::format("{}: {}", file_, reason));
+    case SQLITE_ERROR:  // our SQL is right where its tables are
+      if (reason.starts_with("no such table") || reason.starts_with("no such column"))
+        throw UserError(fmt::format("{}: the file is damaged ({})", file_, reason));
+      [[fallthrough]];
     default:
       throw InternalError(fmt::format("{}: SQLite: {}", file_, reason));
   }
@@ -138,7 +158,11 @@ double Statement::Real(int column) const {
 std::string Statement::Text(int column) const {
   const unsigned char* text = sqlite3_column_text(statement_.get(), column);
   const int bytes = sqlite3_column_bytes(statement_.get(), column);
-  return text ? std::string(reinterpret_cast<const char*>(text), static_cast<std::size_t>(bytes)) : "";
+  if (text == nullptr) return "";
+  std::string value(reinterpret_cast<const char*>(text), static_cast<std::size_t>(bytes));
+  if (!IsUtf8(value))
+    throw UserError(fmt::format("{}: the file is damaged (a text that is not UTF-8)", connection_.file()));
+  return value;
 }
 
 bool Statement::IsNull(int column) const {

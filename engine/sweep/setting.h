@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/config/config.h"
-#include "engine/sweep/yaml_reader.h"
+#include "engine/core/yaml_reader.h"
 
 namespace ed3r {
 

@@ -145,12 +145,17 @@ class SourceReader {
   }
 
  private:
+  static constexpr std::size_t kMaxBases = 20;
+
   SweepSource ReadBase(const YamlNode& base, const std::string& file, bool keep_absolute) {
     const std::filesystem::path written(TextOf(base, "base"));
     const std::string path = (std::filesystem::path(FolderOf(file)) / written).lexically_normal().string();
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error))
       FailAt(base.at, fmt::format("base: '{}' is not a file; looked for '{}'", written.string(), path));
+    if (opened_.size() == kMaxBases)
+      FailAt(base.at, fmt::format("base: '{}' is one file too many; allowed: a chain of at most {}",
+                                  written.string(), kMaxBases));
     for (const std::string& opened : opened_) {
       if (std::filesystem::equivalent(opened, path, error))
         FailAt(base.at, fmt::format("base: '{}' leads back to {}", written.string(), opened));

@@ -11,6 +11,7 @@
 
 #include "engine/core/check.h"
 #include "engine/world/map_relief.h"
+#include "engine/world/picture_file.h"
 
 namespace ed3r {
 namespace {
@@ -292,15 +293,7 @@ class MapPicture {
 
 void WriteMapPicture(const Scene& scene, const std::string& path, const MapOverlay& overlay, int width_px) {
   ED3R_CHECK(width_px >= 200 && width_px <= 8000, fmt::format("width {} px", width_px));
-  const cv::Mat picture = MapPicture(scene, overlay, width_px).Draw();
-  bool written = false;
-  std::string reason = "is the folder there and writable?";
-  try {
-    written = cv::imwrite(path, picture);
-  } catch (const cv::Exception&) {
-    reason = "allowed endings: .png, .jpg";  // OpenCV knows no encoder for this one
-  }
-  if (!written) throw UserError(fmt::format("{}: the map cannot be written; {}", path, reason));
+  WritePicture(MapPicture(scene, overlay, width_px).Draw(), path);
 }
 
 }  // namespace ed3r

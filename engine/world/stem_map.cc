@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -11,7 +10,7 @@
 #include <string_view>
 
 #include "engine/core/check.h"
-#include "engine/world/text_place.h"
+#include "engine/core/csv_table.h"
 
 namespace ed3r {
 namespace {
@@ -30,57 +29,42 @@ constexpr std::array<Column, 6> kColumns = {{{"x_m", -1e7, 1e7, "m"},
                                              {"crown_radius_m", 0.1, 30, "m"}}};
 enum { kX, kY, kDiameter, kHeight, kCrownDepth, kCrownRadius };
 
-struct Cell {
-  std::string_view text;
-  TextPlace place;
+class StemReader {
+ public:
+  explicit StemReader(const std::string& file) : table_(CsvTable::Read(file, CsvComments::kHash)) {
+    for (std::size_t i = 0; i < kColumns.size(); ++i)
+      where_[i] = table_.Column(kColumns[i].name, "a stem map has it");
+  }
+
+  std::size_t Rows() const { return table_.rows(); }
+
+  Stem Read(std::size_t row) const {
+    Stem stem;
+    stem.x_m = Number(row, kX, kColumns[kX].max);
+    stem.y_m = Number(row, kY, kColumns[kY].max);
+    stem.trunk_radius_m = Number(row, kDiameter, kColumns[kDiameter].max) / 200.0;
+    stem.height_m = Number(row, kHeight, kColumns[kHeight].max);
+    stem.crown_depth_m =
+        Number(row, kCrownDepth, stem.height_m);  // a crown is no deeper than its tree is high
+    stem.crown_radius_m = Number(row, kCrownRadius, kColumns[kCrownRadius].max);
+    return stem;
+  }
+
+ private:
+  double Number(std::size_t row, std::size_t i, double max) const {
+    const Column& column = kColumns[i];
+    const std::string_view text = table_.Cell(row, where_[i]);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !(value >= column.min) || !(value <= max))
+      throw UserError(fmt::format("{}'{}' is not allowed; allowed: {:g} .. {:g} {}",
+                                  table_.Where(row, where_[i]), text, column.min, max, column.unit));
+    return value;
+  }
+
+  CsvTable table_;
+  std::array<std::size_t, kColumns.size()> where_{};
 };
-
-// Plain CSV: no quotes, as stem maps hold numbers and species codes.
-std::vector<Cell> Split(std::string_view line, const std::string& file, int line_number) {
-  std::vector<Cell> cells;
-  std::size_t begin = 0;
-  while (true) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    cells.push_back({line.substr(begin, end - begin), {file, line_number, static_cast<int>(begin) + 1}});
-    if (end == line.size()) return cells;
-    begin = end + 1;
-  }
-}
-
-std::array<std::size_t, kColumns.size()> FindColumns(const std::vector<Cell>& header) {
-  std::array<std::size_t, kColumns.size()> where;
-  for (std::size_t i = 0; i < kColumns.size(); ++i) {
-    const auto found = std::find_if(header.begin(), header.end(),
-                                    [&](const Cell& cell) { return cell.text == kColumns[i].name; });
-    if (found == header.end())
-      FailAt(header.front().place,
-             fmt::format("no column '{}' in the header of a stem map", kColumns[i].name));
-    where[i] = static_cast<std::size_t>(found - header.begin());
-  }
-  return where;
-}
-
-double Number(const Cell& cell, const Column& column, double max) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(cell.text.data(), cell.text.data() + cell.text.size(), value);
-  if (error != std::errc() || end != cell.text.data() + cell.text.size() || !(value >= column.min) ||
-      !(value <= max))
-    FailAt(cell.place, fmt::format("{}: '{}' is not allowed; allowed: {:g} .. {:g} {}", column.name,
-                                   cell.text, column.min, max, column.unit));
-  return value;
-}
-
-Stem ReadStem(const std::vector<Cell>& cells, const std::array<std::size_t, kColumns.size()>& where) {
-  const auto number = [&](int i, double max) { return Number(cells[where[i]], kColumns[i], max); };
-  Stem stem;
-  stem.x_m = number(kX, kColumns[kX].max);
-  stem.y_m = number(kY, kColumns[kY].max);
-  stem.trunk_radius_m = number(kDiameter, kColumns[kDiameter].max) / 200.0;
-  stem.height_m = number(kHeight, kColumns[kHeight].max);
-  stem.crown_depth_m = number(kCrownDepth, stem.height_m);  // a crown is no deeper than its tree is high
-  stem.crown_radius_m = number(kCrownRadius, kColumns[kCrownRadius].max);
-  return stem;
-}
 
 void MoveToOrigin(StemMap& map, const std::string& file) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -104,30 +88,10 @@ void MoveToOrigin(StemMap& map, const std::string& file) {
 }  // namespace
 
 StemMap ReadStemMap(const std::string& file) {
-  const std::string text = ReadTextFile(file);
+  const StemReader reader(file);
+  if (reader.Rows() == 0) throw UserError(fmt::format("{}: no trees in this stem map", file));
   StemMap map;
-  std::array<std::size_t, kColumns.size()> where{};
-  std::size_t header_cells = 0;
-  int line_number = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    std::string_view line(text.data() + begin, end - begin);
-    begin = end + 1;
-    ++line_number;
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    if (line.empty() || line.starts_with('#')) continue;
-    const std::vector<Cell> cells = Split(line, file, line_number);
-    if (header_cells == 0) {
-      where = FindColumns(cells);
-      header_cells = cells.size();
-      continue;
-    }
-    if (cells.size() != header_cells)
-      FailAt({file, line_number, 1},
-             fmt::format("{} cells; allowed: {}, as in the header", cells.size(), header_cells));
-    map.stems.push_back(ReadStem(cells, where));
-  }
-  if (map.stems.empty()) throw UserError(fmt::format("{}: no trees in this stem map", file));
+  for (std::size_t row = 0; row < reader.Rows(); ++row) map.stems.push_back(reader.Read(row));
   MoveToOrigin(map, file);
   return map;
 }

@@ -18,20 +18,16 @@ std::string RangeText(const AllowedRange& range) {
 }
 
 // A value as the file shows it, short enough for one line.
-std::string ValueText(const YAML::Node& node) {
-  if (node.IsSequence()) return "[...]";
-  if (node.IsMap()) return "{...}";
-  std::string text = node.IsScalar() ? node.Scalar() : "";
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  if (text.size() > 60) text = text.substr(0, 57) + "...";
-  return text;
+std::string ValueText(const YamlNode& node) {
+  if (node.kind == YamlNode::Kind::kList) return "[...]";
+  if (node.kind == YamlNode::Kind::kMap) return "{...}";
+  return node.text.size() > 60 ? node.text.substr(0, 57) + "..." : node.text;
 }
 
 template <class T>
-std::optional<T> Parse(const YAML::Node& node) {
-  if (!node.IsScalar()) return std::nullopt;
-  std::string_view text = node.Scalar();
+std::optional<T> Parse(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::kScalar) return std::nullopt;
+  std::string_view text = node.text;
   if (text.starts_with('+')) text.remove_prefix(1);
   T value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -42,153 +38,137 @@ std::optional<T> Parse(const YAML::Node& node) {
 }  // namespace
 
 StrictMap StrictMap::FromFile(const std::string& file) {
-  const std::string text = ReadTextFile(file);
-  try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1)
-      FailAt({file, documents[1].Mark().line + 1, documents[1].Mark().column + 1},
-             "a second YAML document; allowed: one");
-    return StrictMap(documents.empty() ? YAML::Node() : documents[0], file, "");
-  } catch (const YAML::Exception& error) {
-    if (error.mark.is_null()) FailAt({file}, error.msg);
-    FailAt({file, error.mark.line + 1, error.mark.column + 1}, error.msg);
-  }
+  return StrictMap(std::make_shared<const YamlNode>(ReadYamlFile(file).root), "");
 }
 
-StrictMap::StrictMap(const YAML::Node& node, std::string file, std::string path)
-    : node_(node), file_(std::move(file)), path_(std::move(path)) {
+// `node` shares the ownership of the file's whole tree.
+StrictMap::StrictMap(std::shared_ptr<const YamlNode> node, std::string path)
+    : node_(std::move(node)), path_(std::move(path)) {
   const std::string name = path_.empty() ? "" : path_.substr(0, path_.size() - 1) + ": ";
-  if (!node_.IsMap())
-    FailAt(PlaceOf(node_, file_),
-           fmt::format("{}'{}' is not allowed; allowed: keys with values", name, ValueText(node_)));
-  for (const auto& entry : node_) {
-    if (!entry.first.IsScalar()) FailAt(PlaceOf(entry.first, file_), name + "a key must be a plain word");
-    const std::string& key = entry.first.Scalar();
-    if (Has(key)) FailAt(PlaceOf(entry.first, file_), Name(key) + ": stands here twice");
-    entries_.push_back({entry.first, entry.second, file_});
-  }
+  if (node_->kind != YamlNode::Kind::kMap)
+    FailAt(node_->at,
+           fmt::format("{}'{}' is not allowed; allowed: keys with values", name, ValueText(*node_)));
 }
 
-TextPlace StrictMap::PlaceOf(const YAML::Node& node, const std::string& file) {
-  const YAML::Mark mark = node.Mark();
-  if (mark.is_null()) return {file};
-  return {file, mark.line + 1, mark.column + 1};
+StrictMap StrictMap::Inside(std::string_view key, const YamlNode& node, std::string path) const {
+  return StrictMap(std::shared_ptr<const YamlNode>(TreeOf(key), &node), std::move(path));
+}
+
+const std::shared_ptr<const YamlNode>& StrictMap::TreeOf(std::string_view key) const {
+  for (const std::shared_ptr<const YamlNode>& base : bases_)
+    if (ed3r::Find(*node_, key) == nullptr && ed3r::Find(*base, key) != nullptr) return base;
+  return node_;
 }
 
 std::string StrictMap::Name(std::string_view key) const { return path_ + std::string(key); }
 
-const StrictMap::Entry* StrictMap::EntryOf(std::string_view key) const {
-  const auto found = std::find_if(entries_.begin(), entries_.end(),
-                                  [&](const Entry& entry) { return entry.key.Scalar() == key; });
-  return found == entries_.end() ? nullptr : &*found;
-}
-
-const std::string& StrictMap::FileOf(std::string_view key) const {
-  const Entry* entry = EntryOf(key);
-  return entry ? entry->file : file_;
-}
-
-YAML::Node StrictMap::Find(std::string_view key) {
+const YamlNode* StrictMap::Find(std::string_view key) {
   asked_.emplace_back(key);
-  const Entry* entry = EntryOf(key);
-  return entry ? entry->value : YAML::Node(YAML::NodeType::Undefined);
+  return ValueOf(key);
 }
+
+const YamlNode* StrictMap::ValueOf(std::string_view key) const { return ed3r::Find(*TreeOf(key), key); }
 
 void StrictMap::TakeOver(const StrictMap& base) {
-  for (const Entry& entry : base.entries_)
-    if (!Has(entry.key.Scalar())) entries_.push_back(entry);
+  bases_.push_back(base.node_);
+  bases_.insert(bases_.end(), base.bases_.begin(), base.bases_.end());
 }
 
-bool StrictMap::Has(std::string_view key) const { return EntryOf(key) != nullptr; }
+bool StrictMap::Has(std::string_view key) const { return ValueOf(key) != nullptr; }
 
 bool StrictMap::HasMap(std::string_view key) const {
-  const Entry* entry = EntryOf(key);
-  return entry && entry->value.IsMap();
+  const YamlNode* node = ValueOf(key);
+  return node != nullptr && node->kind == YamlNode::Kind::kMap;
+}
+
+std::string StrictMap::File() const {
+  const std::size_t column = node_->at.rfind(':');
+  return node_->at.substr(0, node_->at.rfind(':', column - 1));
 }
 
 TextPlace StrictMap::Place(std::string_view key) const {
-  const Entry* entry = EntryOf(key);
-  return entry ? PlaceOf(entry->value, entry->file) : PlaceOf(node_, file_);
+  const YamlNode* node = ValueOf(key);
+  return node != nullptr ? node->at : node_->at;
 }
 
 void StrictMap::Fail(std::string_view key, const std::string& problem) const {
   FailAt(Place(key), fmt::format("{}: {}", Name(key), problem));
 }
 
-void StrictMap::Refuse(const YAML::Node& node, std::string_view key, const std::string& allowed) const {
-  FailAt(PlaceOf(node, FileOf(key)),
-         fmt::format("{}: '{}' is not allowed; allowed: {}", Name(key), ValueText(node), allowed));
+void StrictMap::Refuse(const YamlNode& node, std::string_view key, const std::string& allowed) const {
+  FailAt(node.at, fmt::format("{}: '{}' is not allowed; allowed: {}", Name(key), ValueText(node), allowed));
 }
 
-double StrictMap::Number(const YAML::Node& node, std::string_view key, const AllowedRange& range) const {
+double StrictMap::Number(const YamlNode& node, std::string_view key, const AllowedRange& range) const {
   const std::optional<double> value = Parse<double>(node);
   if (!value || !std::isfinite(*value) || *value < range.min || *value > range.max)
     Refuse(node, key, RangeText(range));
   return *value;
 }
 
-std::vector<YAML::Node> StrictMap::List(const YAML::Node& node, std::string_view key, std::size_t min_count,
-                                        std::size_t max_count, std::string_view of) const {
-  const std::size_t count = node.IsSequence() ? node.size() : 0;
-  if (!node.IsSequence() || count < min_count || count > max_count) {
+const std::vector<YamlNode>& StrictMap::List(const YamlNode& node, std::string_view key,
+                                             std::size_t min_count, std::size_t max_count,
+                                             std::string_view of) const {
+  const bool is_list = node.kind == YamlNode::Kind::kList;
+  const std::size_t count = node.items.size();
+  if (!is_list || count < min_count || count > max_count) {
     const std::string counts =
         min_count == max_count ? fmt::format("{}", min_count) : fmt::format("{} .. {}", min_count, max_count);
-    const std::string found = node.IsSequence() ? fmt::format(" (here {})", count) : "";
+    const std::string found = is_list ? fmt::format(" (here {})", count) : "";
     Refuse(node, key, fmt::format("a list of {} {}{}", counts, of, found));
   }
-  return std::vector<YAML::Node>(node.begin(), node.end());
+  return node.items;
 }
 
 bool StrictMap::Read(std::string_view key, double& value, const AllowedRange& range) {
-  const YAML::Node node = Find(key);
-  if (!node.IsDefined()) return false;
-  value = Number(node, key, range);
+  const YamlNode* node = Find(key);
+  if (node == nullptr) return false;
+  value = Number(*node, key, range);
   return true;
 }
 
 bool StrictMap::Read(std::string_view key, int& value, const AllowedRange& range) {
-  const YAML::Node node = Find(key);
-  if (!node.IsDefined()) return false;
-  const std::optional<int> parsed = Parse<int>(node);
+  const YamlNode* node = Find(key);
+  if (node == nullptr) return false;
+  const std::optional<int> parsed = Parse<int>(*node);
   if (!parsed || *parsed < range.min || *parsed > range.max)
-    Refuse(node, key, RangeText(range) + " (a whole number)");
+    Refuse(*node, key, RangeText(range) + " (a whole number)");
   value = *parsed;
   return true;
 }
 
 bool StrictMap::Read(std::string_view key, std::uint64_t& value) {
-  const YAML::Node node = Find(key);
-  if (!node.IsDefined()) return false;
-  const std::optional<std::uint64_t> parsed = Parse<std::uint64_t>(node);
-  if (!parsed) Refuse(node, key, "0 .. 18446744073709551615 (a whole number)");
+  const YamlNode* node = Find(key);
+  if (node == nullptr) return false;
+  const std::optional<std::uint64_t> parsed = Parse<std::uint64_t>(*node);
+  if (!parsed) Refuse(*node, key, "0 .. 18446744073709551615 (a whole number)");
   value = *parsed;
   return true;
 }
 
 bool StrictMap::Read(std::string_view key, bool& value) {
-  const YAML::Node node = Find(key);
-  if (!node.IsDefined()) return false;
-  const std::string text = node.IsScalar() ? node.Scalar() : "";
-  if (text != "true" && text != "false") Refuse(node, key, "true | false");
+  const YamlNode* node = Find(key);
+  if (node == nullptr) return false;
+  const std::string& text = node->text;
+  if (text != "true" && text != "false") Refuse(*node, key, "true | false");
   value = text == "true";
   return true;
 }
 
 bool StrictMap::Read(std::string_view key, std::string& value) {
-  const YAML::Node node = Find(key);
-  if (!node.IsDefined()) return false;
-  if (!node.IsScalar() || node.Scalar().empty() || node.Scalar().find('\n') != std::string::npos)
-    Refuse(node, key, "text");
-  value = node.Scalar();
+  const YamlNode* node = Find(key);
+  if (node == nullptr) return false;
+  if (node->kind != YamlNode::Kind::kScalar || node->text.empty()) Refuse(*node, key, "text");
+  value = node->text;
   return true;
 }
 
 bool StrictMap::Read(std::string_view key, std::vector<double>& value, std::size_t min_count,
                      std::size_t max_count, const AllowedRange& range) {
-  const YAML::Node node = Find(key);
-  if (!node.IsDefined()) return false;
+  const YamlNode* node = Find(key);
+  if (node == nullptr) return false;
   value.clear();
-  for (const YAML::Node& item : List(node, key, min_count, max_count, "numbers"))
+  for (const YamlNode& item : List(*node, key, min_count, max_count, "numbers"))
     value.push_back(Number(item, key, range));
   return true;
 }
@@ -202,20 +182,20 @@ bool StrictMap::Read(std::string_view key, Eigen::Vector2d& value, const Allowed
 
 bool StrictMap::Read(std::string_view key, std::vector<Eigen::Vector2d>& value, std::size_t min_count,
                      std::size_t max_count, const AllowedRange& range) {
-  const YAML::Node node = Find(key);
-  if (!node.IsDefined()) return false;
+  const YamlNode* node = Find(key);
+  if (node == nullptr) return false;
   value.clear();
-  for (const YAML::Node& point : List(node, key, min_count, max_count, "points [x, y]")) {
-    const std::vector<YAML::Node> pair = List(point, key, 2, 2, "numbers");
+  for (const YamlNode& point : List(*node, key, min_count, max_count, "points [x, y]")) {
+    const std::vector<YamlNode>& pair = List(point, key, 2, 2, "numbers");
     value.emplace_back(Number(pair[0], key, range), Number(pair[1], key, range));
   }
   return true;
 }
 
 std::optional<StrictMap> StrictMap::ReadMap(std::string_view key) {
-  const YAML::Node node = Find(key);
-  if (!node.IsDefined()) return std::nullopt;
-  return StrictMap(node, FileOf(key), Name(key) + ".");
+  const YamlNode* node = Find(key);
+  if (node == nullptr) return std::nullopt;
+  return Inside(key, *node, Name(key) + ".");
 }
 
 std::optional<StrictMap> StrictMap::RequireMap(std::string_view key) {
@@ -226,14 +206,14 @@ std::optional<StrictMap> StrictMap::RequireMap(std::string_view key) {
 
 std::vector<StrictMap> StrictMap::RequireMaps(std::string_view key, std::size_t min_count,
                                               std::size_t max_count) {
-  const YAML::Node node = Find(key);
+  const YamlNode* node = Find(key);
   std::vector<StrictMap> maps;
-  if (!node.IsDefined()) {
+  if (node == nullptr) {
     missing_.emplace_back(key);
     return maps;
   }
-  for (const YAML::Node& item : List(node, key, min_count, max_count, "entries"))
-    maps.push_back(StrictMap(item, FileOf(key), fmt::format("{}[{}].", Name(key), maps.size() + 1)));
+  for (const YamlNode& item : List(*node, key, min_count, max_count, "entries"))
+    maps.push_back(Inside(key, item, fmt::format("{}[{}].", Name(key), maps.size() + 1)));
   return maps;
 }
 
@@ -243,15 +223,18 @@ void StrictMap::RequireOneOf(std::string_view a, std::string_view b) {
 }
 
 void StrictMap::Finish() const {
-  for (const Entry& entry : entries_) {
-    const std::string& key = entry.key.Scalar();
-    if (std::find(asked_.begin(), asked_.end(), key) != asked_.end()) continue;
-    const std::string nearest = NearestWord(key, asked_);
-    const std::string hint = nearest.empty() ? fmt::format("known here: {}", fmt::join(asked_, ", "))
-                                             : fmt::format("did you mean {}?", Name(nearest));
-    FailAt(PlaceOf(entry.key, entry.file), fmt::format("{}: unknown key; {}", Name(key), hint));
+  std::vector<const YamlNode*> maps = {node_.get()};
+  for (const std::shared_ptr<const YamlNode>& base : bases_) maps.push_back(base.get());
+  for (const YamlNode* map : maps) {
+    for (const YamlEntry& entry : map->entries) {
+      if (std::find(asked_.begin(), asked_.end(), entry.key) != asked_.end()) continue;
+      const std::string nearest = NearestWord(entry.key, asked_);
+      const std::string hint = nearest.empty() ? fmt::format("known here: {}", fmt::join(asked_, ", "))
+                                               : fmt::format("did you mean {}?", Name(nearest));
+      FailAt(entry.at, fmt::format("{}: unknown key; {}", Name(entry.key), hint));
+    }
   }
-  if (!missing_.empty()) FailAt(PlaceOf(node_, file_), fmt::format("{}: is missing", Name(missing_.front())));
+  if (!missing_.empty()) FailAt(node_->at, fmt::format("{}: is missing", Name(missing_.front())));
 }
 
 }  // namespace ed3r

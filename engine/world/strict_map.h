@@ -1,5 +1,6 @@
-// A YAML mapping that is read strictly: every key must be known, may stand there once, and its value must lie
-// in the allowed range. All errors are UserErrors of one line, "file:line:column: key: what is wrong".
+// A YAML mapping that is read strictly: every key must be known, and its value must lie in the allowed range; what
+// engine/core/yaml_reader.h refuses (keys twice, tags, anchors, other text than UTF-8, ...) does not come this far.
+// All errors are UserErrors of one line, "file:line:column: key: what is wrong".
 //
 //   StrictMap map = StrictMap::FromFile("world.yaml");
 //   map.Require("cell_m", spec.cell_m, {.min = 0.5, .max = 20, .unit = "m"});
@@ -10,12 +11,11 @@
 // before it complains about a required key that is missing: a misspelt key is both, and the first helps more.
 #pragma once
 
-#include <yaml-cpp/yaml.h>
-
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -63,7 +63,7 @@ class StrictMap {
 
   bool Has(std::string_view key) const;
   bool HasMap(std::string_view key) const;  // the key is there and its value is a mapping
-  const std::string& File() const { return file_; }
+  std::string File() const;  // in which this mapping stands
 
   // Fails at the key's value, or at the mapping when the key is absent.
   [[noreturn]] void Fail(std::string_view key, const std::string& problem) const;
@@ -73,26 +73,20 @@ class StrictMap {
   void Finish() const;
 
  private:
-  StrictMap(const YAML::Node& node, std::string file, std::string path);
+  StrictMap(std::shared_ptr<const YamlNode> node, std::string path);
+  StrictMap Inside(std::string_view key, const YamlNode& node, std::string path) const;
 
-  struct Entry {
-    YAML::Node key, value;
-    std::string file;
-  };
-
-  YAML::Node Find(std::string_view key);
-  const Entry* EntryOf(std::string_view key) const;  // null when the key is absent
-  const std::string& FileOf(std::string_view key) const;
+  const YamlNode* Find(std::string_view key);
+  const YamlNode* ValueOf(std::string_view key) const;  // null when the key is absent
+  const std::shared_ptr<const YamlNode>& TreeOf(std::string_view key) const;  // where it stands, or this one
   std::string Name(std::string_view key) const;  // with the path that leads here
-  static TextPlace PlaceOf(const YAML::Node& node, const std::string& file);
-  double Number(const YAML::Node& node, std::string_view key, const AllowedRange& range) const;
-  std::vector<YAML::Node> List(const YAML::Node& node, std::string_view key, std::size_t min_count,
-                               std::size_t max_count, std::string_view of) const;
-  [[noreturn]] void Refuse(const YAML::Node& node, std::string_view key, const std::string& allowed) const;
+  double Number(const YamlNode& node, std::string_view key, const AllowedRange& range) const;
+  const std::vector<YamlNode>& List(const YamlNode& node, std::string_view key, std::size_t min_count,
+                                    std::size_t max_count, std::string_view of) const;
+  [[noreturn]] void Refuse(const YamlNode& node, std::string_view key, const std::string& allowed) const;
 
-  YAML::Node node_;
-  std::vector<Entry> entries_;  // in the file's order, then those taken over
-  std::string file_;
+  std::shared_ptr<const YamlNode> node_;
+  std::vector<std::shared_ptr<const YamlNode>> bases_;  // taken over: the nearest first
   std::string path_;  // "" or "terrain.grid."
   std::vector<std::string> asked_;
   std::vector<std::string> missing_;

@@ -1,20 +1,13 @@
-// Where in a text file something stands, for error messages. Lines and columns count from 1.
+// Where in a text file something stands, for error messages.
 #pragma once
 
 #include <string>
 
+#include "engine/core/yaml_reader.h"
+
 namespace ed3r {
 
-struct TextPlace {
-  std::string file;
-  int line = 1;
-  int column = 1;
-};
-
-// Throws UserError "file:line:column: problem".
-[[noreturn]] void FailAt(const TextPlace& place, const std::string& problem);
-
-// "file: cannot be read (why)" as UserError, or the file's whole text.
-std::string ReadTextFile(const std::string& file);
+// "file:line:column", counted from 1; FailAt of yaml_reader.h begins its message with it.
+using TextPlace = std::string;
 
 }  // namespace ed3r

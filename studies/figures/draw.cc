@@ -10,8 +10,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 #include <vector>
+
+#include "engine/core/check.h"
+#include "engine/core/file.h"
 
 extern char** environ;
 
@@ -27,9 +30,38 @@ std::string Environment(const char* name, const char* otherwise) {
   return value != nullptr && *value != '\0' ? value : otherwise;
 }
 
+// A folder of our own inside `parent`, removed with all that is in it. Scripts write by name and through links; here
+// nobody else has put any.
+class PrivateFolder {
+ public:
+  explicit PrivateFolder(const fs::path& parent) {
+    std::string pattern = (parent / ".drawing-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr)
+      throw UserError(fmt::format("{}: cannot be written: {}", parent.string(), std::strerror(errno)));
+    path_ = pattern;
+  }
+  ~PrivateFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+// Pictures that the script made take their place whole.
+void TakePictures(const fs::path& from, const fs::path& into) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(from))
+    if (entry.is_regular_file() && (entry.path().extension() == ".png" || entry.path().extension() == ".svg"))
+      fs::rename(entry.path(), into / entry.path().filename());
+}
+
 // The last line that is not empty: of a Python traceback the one that names the error.
-std::string LastLine(const fs::path& file) {
-  std::ifstream lines(file);
+std::string LastLine(const std::string& text) {
+  std::istringstream lines(text);
   std::string last;
   for (std::string line; std::getline(lines, line);)
     if (!line.empty()) last = line;
@@ -62,14 +94,23 @@ DrawResult DrawFigures(const std::string& folder, const std::string& script_name
   if (!fs::exists(script))
     return {Drawing::kUnavailable,
             fmt::format("{} is not there; set ED3R_SCRIPTS to its folder", script.string())};
-  const fs::path errors = fs::path(folder) / "plot.log";
-  const int status = RunProgram({python, "-B", script.string(), folder}, errors);
-  const std::string last = LastLine(errors);
-  std::error_code ignored;
-  if (status != 0 && status != kNoMatplotlib && status > 0)
+  const PrivateFolder work(folder);
+  for (const char* data : {"data.json", "fit.json", "rows.csv", "flights.csv"})
+    if (const fs::path file = fs::path(folder) / data; fs::is_regular_file(file))
+      fs::copy_file(file, work.path() / data);
+  const fs::path errors = work.path() / "plot.log", log = fs::path(folder) / "plot.log";
+  const int status = RunProgram({python, "-B", script.string(), work.path().string()}, errors);
+  TakePictures(work.path(), folder);
+  std::string said, ignored;
+  TryReadFile(errors.string(), kMaxTextBytes, said, ignored);
+  const std::string last = LastLine(said);
+  if (status != 0 && status != kNoMatplotlib && status > 0) {
+    WriteFile(log, said);
     return {Drawing::kFailed, fmt::format("{} ({}; all of it in {})", last.empty() ? "no message" : last,
-                                          script.string(), errors.string())};
-  fs::remove(errors, ignored);
+                                          script.string(), log.string())};
+  }
+  std::error_code none;
+  fs::remove(log, none);  // of an earlier drawing that failed
   if (status == -ENOENT || status == -EACCES)
     return {Drawing::kUnavailable, fmt::format("{}: {}; set ED3R_PYTHON", python, std::strerror(-status))};
   if (status < 0) return {Drawing::kFailed, fmt::format("{}: {}", python, std::strerror(-status))};

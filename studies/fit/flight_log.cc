@@ -9,6 +9,7 @@
 #include <set>
 
 #include "engine/core/check.h"
+#include "engine/core/utf8.h"
 
 namespace ed3r {
 namespace {
@@ -87,6 +88,7 @@ class TableReader {
     for (std::size_t row = 0; row < table_.rows(); ++row) {
       const std::string id =
           format_.Has("flight") ? fmt::format("{}#{}", file, table_.Cell(row, flight_column_)) : file;
+      if (!IsUtf8(id)) throw UserError(fmt::format("{}not UTF-8 text", table_.Where(row, flight_column_)));
       if (flights.empty() || flights.back().id != id) {
         if (!seen.insert(id).second)
           throw UserError(

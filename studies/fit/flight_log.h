@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/fit/csv_table.h"
+#include "engine/core/csv_table.h"
 #include "studies/fit/log_format.h"
 
 namespace ed3r {

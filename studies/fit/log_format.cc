@@ -2,14 +2,16 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <yaml-cpp/yaml.h>
 
-#include <fstream>
-#include <sstream>
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
 
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "engine/core/suggest.h"
+#include "engine/core/yaml_reader.h"
 
 namespace ed3r {
 namespace {
@@ -66,127 +68,116 @@ const std::vector<std::string> kKeys = {
     "columns",   "units", "climb_from", "climb_window_s", "air_density_kgm3",
     "in_flight", "hover", "robot",      "notes"};
 
-// Reads one document and keeps its name for messages.
+using Entry = YamlEntry;
+
 class FormatReader {
  public:
-  FormatReader(const std::string& name, const std::string& yaml) : name_(name) {
+  FormatReader(const std::string& name, const std::string& yaml) : root_(ParseYaml(name, yaml).root) {
     format_.name = name;
-    try {
-      root_ = YAML::Load(yaml);
-    } catch (const YAML::Exception& error) {
-      throw UserError(
-          fmt::format("{}:{}:{}: {}", name_, error.mark.line + 1, error.mark.column + 1, error.msg));
-    }
   }
 
   LogFormat Read() {
-    if (!root_.IsMap()) Fail(root_, "a map with 'columns' was expected");
-    for (const auto& entry : root_) ReadKey(entry.first, entry.second);
+    if (root_.kind != YamlNode::Kind::kMap) FailAt(root_.at, "a map with 'columns' was expected");
+    for (const Entry& entry : root_.entries) ReadKey(entry);
     CheckColumns();
     return format_;
   }
 
  private:
-  [[noreturn]] void Fail(const YAML::Node& node, const std::string& problem) const {
-    throw UserError(
-        fmt::format("{}:{}:{}: {}", name_, node.Mark().line + 1, node.Mark().column + 1, problem));
+  static void CheckKnown(const Entry& entry, const std::vector<std::string>& known) {
+    if (std::find(known.begin(), known.end(), entry.key) != known.end()) return;
+    const std::string nearest = NearestWord(entry.key, known);
+    FailAt(entry.at, nearest.empty()
+                         ? fmt::format("{}: unknown key; known: {}", entry.key, fmt::join(known, ", "))
+                         : fmt::format("{}: unknown key; did you mean {}?", entry.key, nearest));
   }
 
-  void CheckKnown(const YAML::Node& key, const std::vector<std::string>& known) const {
-    const std::string word = key.Scalar();
-    if (std::find(known.begin(), known.end(), word) != known.end()) return;
-    const std::string nearest = NearestWord(word, known);
-    Fail(key, nearest.empty() ? fmt::format("{}: unknown key; known: {}", word, fmt::join(known, ", "))
-                              : fmt::format("{}: unknown key; did you mean {}?", word, nearest));
+  static const std::vector<Entry>& Entries(const Entry& map) {
+    if (map.value.kind != YamlNode::Kind::kMap)
+      FailAt(map.value.at, fmt::format("{}: a map was expected", map.key));
+    return map.value.entries;
   }
 
-  const YAML::Node& Map(const YAML::Node& key, const YAML::Node& value) const {
-    if (!value.IsMap()) Fail(value, fmt::format("{}: a map was expected", key.Scalar()));
-    return value;
+  static const std::string& Text(const std::string& key, const YamlNode& value) {
+    if (value.kind != YamlNode::Kind::kScalar || value.text.empty())
+      FailAt(value.at, fmt::format("{}: a text was expected", key));
+    return value.text;
   }
 
-  std::string Text(const YAML::Node& key, const YAML::Node& value) const {
-    if (!value.IsScalar() || value.Scalar().empty())
-      Fail(value, fmt::format("{}: a text was expected", key.Scalar()));
-    return value.Scalar();
-  }
-
-  double Number(const YAML::Node& key, const YAML::Node& value, double min, double max) const {
+  static double Number(const Entry& entry, double min, double max) {
+    const std::string& text = entry.value.text;
+    const char *begin = text.data() + (text.starts_with('+') ? 1 : 0), *end = text.data() + text.size();
     double number = 0.0;
-    if (!value.IsScalar() || !YAML::convert<double>::decode(value, number) ||
-        !(number >= min && number <= max))
-      Fail(value, fmt::format("{}: '{}' is not allowed; allowed: {:g} .. {:g}", key.Scalar(),
-                              value.IsScalar() ? value.Scalar() : "(not a number)", min, max));
+    const auto [stop, error] = std::from_chars(begin, end, number);
+    if (error != std::errc() || stop != end || !(number >= min && number <= max))
+      FailAt(entry.value.at, fmt::format("{}: {} is not allowed; allowed: {:g} .. {:g}", entry.key,
+                                         Described(entry.value), min, max));
     return number;
   }
 
-  void ReadKey(const YAML::Node& key, const YAML::Node& value) {
-    CheckKnown(key, kKeys);
-    const std::string word = key.Scalar();
+  void ReadKey(const Entry& entry) {
+    CheckKnown(entry, kKeys);
+    const std::string& word = entry.key;
     if (word == "columns") {
-      for (const auto& [meaning, column] : Pairs(key, value)) {
-        CheckKnown(meaning, kMeanings);
-        format_.columns[meaning.Scalar()] = Text(meaning, column);
+      for (const Entry& column : Entries(entry)) {
+        CheckKnown(column, kMeanings);
+        format_.columns[column.key] = Text(column.key, column.value);
       }
     } else if (word == "units") {
-      for (const auto& [meaning, factor] : Pairs(key, value)) {
-        CheckKnown(meaning, kMeanings);
-        format_.units[meaning.Scalar()] = Number(meaning, factor, -1e9, 1e9);
-        if (format_.units[meaning.Scalar()] == 0.0) Fail(factor, "units: a factor of 0 loses the column");
+      for (const Entry& factor : Entries(entry)) {
+        CheckKnown(factor, kMeanings);
+        format_.units[factor.key] = Number(factor, -1e9, 1e9);
+        if (format_.units[factor.key] == 0.0)
+          FailAt(factor.value.at, "units: a factor of 0 loses the column");
       }
     } else if (word == "climb_from") {
-      const std::string source = Text(key, value);
+      const std::string& source = Text(word, entry.value);
       if (source != "column" && source != "altitude")
-        Fail(value, fmt::format("climb_from: '{}' is not allowed; allowed: column | altitude", source));
+        FailAt(entry.value.at,
+               fmt::format("climb_from: '{}' is not allowed; allowed: column | altitude", source));
       format_.climb_from = source == "altitude" ? ClimbFrom::kAltitude : ClimbFrom::kColumn;
     } else if (word == "climb_window_s") {
-      format_.climb_window_s = Number(key, value, 0.05, 30);
+      format_.climb_window_s = Number(entry, 0.05, 30);
     } else if (word == "air_density_kgm3") {
-      format_.air_density_kgm3 = Number(key, value, 0.3, 2);
+      format_.air_density_kgm3 = Number(entry, 0.3, 2);
     } else if (word == "in_flight") {
-      for (const auto& [column, least] : Pairs(key, value))
-        format_.in_flight[column.Scalar()] = Number(column, least, -1e12, 1e12);
+      for (const Entry& least : Entries(entry)) format_.in_flight[least.key] = Number(least, -1e12, 1e12);
     } else if (word == "hover") {
-      ReadHover(key, value);
+      ReadHover(entry);
     } else if (word == "robot") {
-      ReadRobot(key, value);
+      ReadRobot(entry);
     } else {
-      ReadNotes(key, value);
+      ReadNotes(entry);
     }
   }
 
-  std::vector<std::pair<YAML::Node, YAML::Node>> Pairs(const YAML::Node& key, const YAML::Node& value) const {
-    std::vector<std::pair<YAML::Node, YAML::Node>> pairs;
-    for (const auto& entry : Map(key, value)) pairs.emplace_back(entry.first, entry.second);
-    return pairs;
-  }
-
-  void ReadHover(const YAML::Node& key, const YAML::Node& value) {
-    for (const auto& [limit, number] : Pairs(key, value)) {
+  void ReadHover(const Entry& hover) {
+    for (const Entry& limit : Entries(hover)) {
       CheckKnown(limit, {"max_speed_mps", "max_climb_mps"});
-      (limit.Scalar() == "max_speed_mps" ? format_.hover_max_speed_mps : format_.hover_max_climb_mps) =
-          Number(limit, number, 0.01, 20);
+      (limit.key == "max_speed_mps" ? format_.hover_max_speed_mps : format_.hover_max_climb_mps) =
+          Number(limit, 0.01, 20);
     }
   }
 
-  void ReadRobot(const YAML::Node& key, const YAML::Node& value) {
+  void ReadRobot(const Entry& robot) {
     Config config;
     config.robot = format_.robot;
-    for (const auto& [field, text] : Pairs(key, value)) {
-      const std::string problem = SetParameter(config, "robot." + field.Scalar(), Text(field, text));
-      if (!problem.empty()) Fail(text, problem);
+    for (const Entry& field : Entries(robot)) {
+      const std::string problem = SetParameter(config, "robot." + field.key, Text(field.key, field.value));
+      if (!problem.empty()) FailAt(field.value.at, problem);
     }
     format_.robot = config.robot;
   }
 
-  void ReadNotes(const YAML::Node& key, const YAML::Node& value) {
-    if (!value.IsSequence()) Fail(value, "notes: a list of texts was expected");
-    for (const auto& note : value) format_.notes.push_back(Text(key, note));
+  void ReadNotes(const Entry& notes) {
+    if (notes.value.kind != YamlNode::Kind::kList)
+      FailAt(notes.value.at, "notes: a list of texts was expected");
+    for (const YamlNode& note : notes.value.items) format_.notes.push_back(Text("notes", note));
   }
 
   void CheckColumns() const {
     const auto need = [this](bool there, const char* what) {
-      if (!there) Fail(root_, fmt::format("columns: {}", what));
+      if (!there) FailAt(root_.at, fmt::format("columns: {}", what));
     };
     need(format_.Has("time_s"), "time_s is missing");
     need(format_.Has("power_w") || (format_.Has("voltage_v") && format_.Has("current_a")),
@@ -200,8 +191,7 @@ class FormatReader {
       need(format_.Has("climb_mps"), "climb_mps is missing (or set climb_from: altitude)");
   }
 
-  std::string name_;
-  YAML::Node root_;
+  YamlNode root_;
   LogFormat format_;
 };
 
@@ -214,16 +204,14 @@ LogFormat ParseLogFormat(const std::string& name, const std::string& yaml) {
 LogFormat LoadLogFormat(const std::string& name_or_path) {
   for (const BuiltIn& format : kBuiltIn)
     if (format.name == name_or_path) return ParseLogFormat(format.name, format.yaml);
-  std::ifstream file(name_or_path);
-  if (!file) {
+  if (!std::filesystem::exists(name_or_path)) {
     const std::string nearest = NearestWord(name_or_path, BuiltInLogFormats());
     throw UserError(fmt::format("--format: '{}' is neither a file nor a built-in format ({}){}", name_or_path,
                                 fmt::join(BuiltInLogFormats(), ", "),
                                 nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest)));
   }
-  std::ostringstream text;
-  text << file.rdbuf();
-  return ParseLogFormat(name_or_path, text.str());
+  const std::string yaml = ReadFile(name_or_path, kMaxYamlFileLength);
+  return ParseLogFormat(name_or_path, yaml);
 }
 
 std::vector<std::string> BuiltInLogFormats() {

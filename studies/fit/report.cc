@@ -6,10 +6,9 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
-#include "engine/core/check.h"
+#include "engine/core/file.h"
 
 namespace ed3r {
 namespace {
@@ -107,13 +106,6 @@ void PrintHover(const FitReport& report, std::ostream& out) {
                report.scaling.points.size());
 }
 
-void Save(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw UserError(fmt::format("{}: cannot be written", path.string()));
-}
-
 std::string FlightsCsv(const FitReport& report) {
   std::string csv = "set,flight,mass_kg,duration_s,measured_j";
   for (const ModelReport& model : report.models) csv += "," + model.name + "_j";
@@ -203,17 +195,15 @@ std::string FittedYaml(const FitReport& report) {
 }
 
 void WriteFitOutputs(const FitReport& report, const std::string& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw UserError(fmt::format("{}: {}", directory, error.message()));
+  MakeFolder(directory);
   const std::filesystem::path path(directory);
   std::ostringstream text;
   PrintReport(report, text);
-  Save(path / "report.txt", text.str());
-  Save(path / "fit.json", ToJson(report).dump(1) + "\n");
-  Save(path / "fitted.yaml", FittedYaml(report));
-  Save(path / "flights.csv", FlightsCsv(report));
-  Save(path / "rows.csv", RowsCsv(report));
+  WriteFile(path / "report.txt", text.str());
+  WriteFile(path / "fit.json", ToJson(report).dump(1) + "\n");
+  WriteFile(path / "fitted.yaml", FittedYaml(report));
+  WriteFile(path / "flights.csv", FlightsCsv(report));
+  WriteFile(path / "rows.csv", RowsCsv(report));
 }
 
 }  // namespace ed3r

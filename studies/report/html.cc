@@ -34,8 +34,8 @@ std::string MachineText(const Provenance::Session& session) {
 std::string WhatWasRun(const Provenance& p) {
   std::string worlds;
   for (const auto& [file, fingerprint] : p.inputs)
-    worlds +=
-        fmt::format("{}{} <small>{}</small>", worlds.empty() ? "" : "<br>", HtmlText(file), fingerprint);
+    worlds += fmt::format("{}{} <small>{}</small>", worlds.empty() ? "" : "<br>", HtmlText(file),
+                          HtmlText(fingerprint));
   std::string missions = fmt::format("{} of {} planned", p.stored, p.planned);
   if (p.failed > 0) missions += fmt::format(", {} failed in the program", p.failed);
   if (p.stored + p.failed < p.planned)
@@ -48,7 +48,7 @@ std::string WhatWasRun(const Provenance& p) {
                          : p.sessions.front().begun_utc + " to " +
                                (p.sessions.back().ended_utc.empty() ? "now" : p.sessions.back().ended_utc);
   return "<section id=\"run\"><h2>What was run</h2>\n<dl>\n" + Fact("command", Code(p.command)) +
-         Fact("sweep", HtmlText(p.sweep)) + Fact("seed", p.seed) + Fact("missions", missions) +
+         Fact("sweep", HtmlText(p.sweep)) + Fact("seed", HtmlText(p.seed)) + Fact("missions", missions) +
          Fact("flown time",
               fmt::format("{:.1f} simulated hours in {:.2f} core hours", p.simulated_h, p.wall_h)) +
          Fact("worlds", worlds) +
@@ -72,7 +72,7 @@ std::string TableCell(const ArmMetrics& arm, std::size_t metric) {
 
 std::string TableHtml(const StudyTable& table) {
   std::string html = fmt::format("<h3 id=\"table-{}\">{}</h3>\n<div class=\"wide\"><table>\n<tr><th></th>",
-                                 table.id, HtmlText(table.title));
+                                 HtmlText(table.id), HtmlText(table.title));
   const std::size_t rows = table.arms_down ? table.arms.size() : table.metrics.size();
   const std::size_t columns = table.arms_down ? table.metrics.size() : table.arms.size();
   for (std::size_t c = 0; c < columns; ++c)
@@ -88,7 +88,7 @@ std::string TableHtml(const StudyTable& table) {
   }
   html += "</table></div>\n<p class=\"files\">";
   for (const char* ending : {"md", "tex", "csv", "json"})
-    html += fmt::format("<a href=\"tables/{0}.{1}\">{0}.{1}</a> ", table.id, ending);
+    html += fmt::format("<a href=\"tables/{0}.{1}\">{0}.{1}</a> ", HtmlText(table.id), ending);
   return html + "</p>\n";
 }
 
@@ -133,6 +133,9 @@ std::string HtmlText(std::string_view text) {
         break;
       case '"':
         out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
         break;
       default:
         out += c;

@@ -29,7 +29,7 @@ double HalfWidthOf(ArmData arm, int missions, const std::string& metric) {
 bool KnownWellEnough(const ArmData& arm, const std::optional<Precision>& precision) {
   if (!precision) return false;
   const auto flown = static_cast<int>(arm.missions.size());
-  return flown > 0 && flown % precision->every == 0 &&
+  return flown > 0 && precision->every > 0 && flown % precision->every == 0 &&
          HalfWidthOf(arm, flown, precision->metric) <= precision->half_width;
 }
 

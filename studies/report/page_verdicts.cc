@@ -38,9 +38,9 @@ std::string Row(const JudgedClaim& judged) {
       "<tr><td title=\"{}\">{}</td><td "
       "class=\"text\">{}<small>{}</small></td><td>{}</td><td>{}<i>{}</i></td><td>{}</td>"
       "<td>{}</td><td class=\"text\"><span class=\"{}\">{}</span></td></tr>\n",
-      HtmlText(judged.claim.exact_words), judged.claim.id, HtmlText(ClaimInWords(judged.claim, kWords)),
-      HtmlText(all.why), Number(all.paper), Number(all.ours), interval, PValue(all.p_holm), Agreement(judged),
-      ClassOf(all.verdict), NameWithLuck(judged));
+      HtmlText(judged.claim.exact_words), HtmlText(judged.claim.id),
+      HtmlText(ClaimInWords(judged.claim, kWords)), HtmlText(all.why), Number(all.paper), Number(all.ours),
+      interval, PValue(all.p_holm), Agreement(judged), ClassOf(all.verdict), NameWithLuck(judged));
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
+#include "engine/core/file.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/paper/claims.h"
-#include "studies/report/files.h"
 #include "studies/tables/data_files.h"
 
 namespace ed3r {
@@ -16,10 +16,10 @@ namespace fs = std::filesystem;
 
 void WriteTable(const StudyTable& table, const fs::path& folder) {
   const std::vector<Claim>& claims = PaperClaims();
-  WriteWhole(folder / (table.id + ".md"), MarkdownTable(table, claims));
-  WriteWhole(folder / (table.id + ".tex"), LatexTable(table, claims));
-  WriteWhole(folder / (table.id + ".csv"), CsvTable(table, claims));
-  WriteWhole(folder / (table.id + ".json"), JsonTable(table, claims).dump(2) + '\n');
+  WriteFile(folder / (table.id + ".md"), MarkdownTable(table, claims));
+  WriteFile(folder / (table.id + ".tex"), LatexTable(table, claims));
+  WriteFile(folder / (table.id + ".csv"), CsvTable(table, claims));
+  WriteFile(folder / (table.id + ".json"), JsonTable(table, claims).dump(2) + '\n');
 }
 
 }  // namespace
@@ -77,17 +77,17 @@ nlohmann::ordered_json ReportJson(const Report& report) {
 void WriteReport(const Report& report, const std::string& dir) {
   const fs::path base(dir);
   MakeFolder(base / "tables");
-  WriteWhole(base / "report.txt", ReportText(report));
-  WriteWhole(base / "report.json", ReportJson(report).dump(2) + '\n');
-  WriteWhole(base / "metrics.csv", ResultCsv(report.arms, PaperClaims()));
-  WriteWhole(base / "generalisation.csv", GeneralisationCsv(report.generalisation));
-  WriteWhole(base / "verdicts.csv", VerdictCsv(report.claims));
-  if (report.claims.networks > 1) WriteWhole(base / "by_network.csv", ByNetworkCsv(report.claims));
-  WriteWhole(base / "convergence.csv", ConvergenceCsv(report.convergence));
-  WriteWhole(base / "look_forward.csv", LookForwardCsv(report.look_forward));
+  WriteFile(base / "report.txt", ReportText(report));
+  WriteFile(base / "report.json", ReportJson(report).dump(2) + '\n');
+  WriteFile(base / "metrics.csv", ResultCsv(report.arms, PaperClaims()));
+  WriteFile(base / "generalisation.csv", GeneralisationCsv(report.generalisation));
+  WriteFile(base / "verdicts.csv", VerdictCsv(report.claims));
+  if (report.claims.networks > 1) WriteFile(base / "by_network.csv", ByNetworkCsv(report.claims));
+  WriteFile(base / "convergence.csv", ConvergenceCsv(report.convergence));
+  WriteFile(base / "look_forward.csv", LookForwardCsv(report.look_forward));
   if (!report.variants.variants.empty()) {
-    WriteWhole(base / "variants.csv", DifferenceCsv(report.variants));
-    WriteWhole(base / "variant_verdicts.csv", VariantVerdictCsv(report.variants));
+    WriteFile(base / "variants.csv", DifferenceCsv(report.variants));
+    WriteFile(base / "variant_verdicts.csv", VariantVerdictCsv(report.variants));
   }
   for (const StudyTable& table : report.tables) WriteTable(table, base / "tables");
 }

@@ -4,9 +4,10 @@
 
 #include <filesystem>
 
+#include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "studies/figures/draw.h"
 #include "studies/figures/figure_data.h"
-#include "studies/report/files.h"
 #include "studies/report/html.h"
 #include "studies/report/provenance.h"
 
@@ -14,6 +15,8 @@ namespace ed3r {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kManifest = "manifest.json";
 
 // Of a sweep with variants: of its first one.
 nlohmann::ordered_json FigureData(const Report& report, const RunResults& results, const std::string& dir) {
@@ -57,12 +60,43 @@ std::string CaptionsPage(const std::string& name, const nlohmann::ordered_json& 
   return page;
 }
 
-// Pictures of an earlier report would be taken for this one's.
-void RemovePictures(const fs::path& folder) {
+// Files that a report may hold are replaced; anything else in its folder belongs to somebody.
+bool IsReport(const fs::path& folder) {
+  std::string text, ignored;
+  if (!TryReadFile((folder / kManifest).string(), kMaxTextBytes, text, ignored)) return false;
+  const auto manifest = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  return manifest.is_object() && manifest.contains("sweep") && manifest.contains("digest");
+}
+
+void CheckFolder(const fs::path& folder) {
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".png" || entry.path().extension() == ".svg")
-      fs::remove(entry.path(), error);
+  const bool there = fs::exists(folder, error);
+  if (!there || (fs::is_directory(folder, error) && fs::is_empty(folder, error)) || IsReport(folder)) return;
+  throw UserError(
+      fmt::format("{}: is there and is no report; --force writes the report's files into it all the same",
+                  folder.string()));
+}
+
+bool IsPlainName(const std::string& id) {
+  return !id.empty() && id.find('/') == std::string::npos && id.find('\0') == std::string::npos;
+}
+
+// Pictures of an earlier report would be taken for this one's. Only those that a report lists are removed.
+void RemovePictures(const fs::path& folder, const nlohmann::ordered_json& figures) {
+  for (const auto& figure : figures) {
+    if (!figure.is_object() || !figure.contains("id") || !figure["id"].is_string()) continue;
+    const std::string id = figure["id"];
+    std::error_code ignored;
+    for (const char* ending : {".png", ".svg"})
+      if (IsPlainName(id)) fs::remove(folder / (id + ending), ignored);
+  }
+}
+
+void RemoveOldPictures(const fs::path& folder) {
+  std::string text, ignored;
+  if (!TryReadFile((folder / "data.json").string(), kMaxTextBytes, text, ignored)) return;
+  const auto data = nlohmann::ordered_json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (data.is_object() && data.contains("figures")) RemovePictures(folder, data["figures"]);
 }
 
 }  // namespace
@@ -70,11 +104,17 @@ void RemovePictures(const fs::path& folder) {
 FolderResult WriteReportFolder(const Report& report, const RunResults& results,
                                const FolderOptions& options) {
   const fs::path base(options.out), figures = base / "figures";
+  if (!options.force) CheckFolder(base);
+  const Provenance provenance = ReadProvenance(options.dir);
+  MakeFolder(base);
+  // First: a report that did not come to its end is known as one.
+  WriteFile(base / kManifest, ManifestJson(provenance).dump(2) + '\n');
   WriteReport(report, options.out);
   MakeFolder(figures);
   const nlohmann::ordered_json data = FigureData(report, results, options.dir);
-  WriteWhole(figures / "data.json", data.dump() + '\n');
-  RemovePictures(figures);
+  RemoveOldPictures(figures);
+  RemovePictures(figures, data.at("figures"));
+  WriteFile(figures / "data.json", data.dump() + '\n');
   FolderResult result;
   if (!options.figures) {
     result.note = "figures not drawn (--no-figures)";
@@ -86,12 +126,10 @@ FolderResult WriteReportFolder(const Report& report, const RunResults& results,
   nlohmann::ordered_json drawn = nlohmann::ordered_json::array();
   for (const auto& figure : data.at("figures"))
     if (fs::exists(figures / (figure.at("id").get<std::string>() + ".png"))) drawn.push_back(figure);
-  WriteWhole(figures / "README.md", CaptionsPage(results.name, data.at("figures"), figures));
+  WriteFile(figures / "README.md", CaptionsPage(results.name, data.at("figures"), figures));
   result.figures = static_cast<int>(drawn.size());
   const std::string note = result.plot_error.empty() ? result.note : "drawing failed: " + result.plot_error;
-  const Provenance provenance = ReadProvenance(options.dir);
-  WriteWhole(base / "manifest.json", ManifestJson(provenance).dump(2) + '\n');
-  WriteWhole(base / "index.html", ReportPage({report, provenance, std::move(drawn), note, options.command}));
+  WriteFile(base / "index.html", ReportPage({report, provenance, std::move(drawn), note, options.command}));
   return result;
 }
 

@@ -11,6 +11,7 @@ struct FolderOptions {
   std::string dir;      // of the run
   std::string out;      // the report's folder, made where it is missing
   bool figures = true;  // draw them; their data are written in any case
+  bool force = false;   // write into a folder that holds other things than a report
   std::string command;  // that made it, for the page
 };
 
@@ -21,9 +22,9 @@ struct FolderResult {
 };
 
 // Writes what WriteReport does, manifest.json (provenance.h), figures/data.json (studies/figures/figure_data.h),
-// figures/ID.png and .svg, figures/README.md with the title and caption of every figure, and index.html. Pictures that
-// an earlier report left and this one does not make are removed. Throws UserError where the run cannot be read or the
-// folder not be written.
+// figures/ID.png and .svg, figures/README.md with the title and caption of every figure, and index.html. Of the pictures
+// there, those that an earlier report lists in its data.json are removed, no others. Throws UserError where the run cannot
+// be read, the folder not be written, or where it is not empty and no report (without a manifest.json of one).
 FolderResult WriteReportFolder(const Report& report, const RunResults& results, const FolderOptions& options);
 
 }  // namespace ed3r

@@ -112,11 +112,51 @@ TEST_F(ReportTest, APlotThatFailsIsAFailureWithItsLine) {
   EXPECT_NE(ReadAll(Out() / "figures" / "plot.log").find("Traceback"), std::string::npos);
 }
 
-TEST_F(ReportTest, OldPicturesDoNotStay) {
-  fs::create_directories(Out() / "figures");
-  std::ofstream(Out() / "figures" / "old.png") << "x";
+TEST_F(ReportTest, PicturesOfAnEarlierReportDoNotStayAndThoseOfOthersDo) {
+  const fs::path figures = Out() / "figures";
+  ASSERT_EQ(Report("--no-figures").status, 0);
+  std::ofstream(figures / "overview-other.png") << "drawn by a report";
+  std::ofstream(figures / "holiday.png") << "mine";
+  std::ofstream(figures / "logo.svg") << "mine";
+  auto data = nlohmann::json::parse(ReadAll(figures / "data.json"));
+  data["figures"].push_back({{"id", "overview-other"}});
+  data["figures"].push_back({{"id", "../holiday"}});
+  std::ofstream(Out() / "holiday.png") << "mine";
+  std::ofstream(figures / "data.json") << data.dump();
   EXPECT_EQ(Report("--no-figures").status, 0);
-  EXPECT_FALSE(fs::exists(Out() / "figures" / "old.png"));
+  EXPECT_FALSE(fs::exists(figures / "overview-other.png"));
+  EXPECT_EQ(ReadAll(figures / "holiday.png"), "mine");
+  EXPECT_EQ(ReadAll(figures / "logo.svg"), "mine");
+  EXPECT_EQ(ReadAll(Out() / "holiday.png"), "mine");
+}
+
+TEST_F(ReportTest, AFolderOfSomebodyIsLeftAloneWithoutForce) {
+  fs::create_directories(Out());
+  std::ofstream(Out() / "thesis.txt") << "mine";
+  const CommandResult refused = Report("--no-figures");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.err,
+            Out().string() +
+                ": is there and is no report; --force writes the report's files into it all the same\n");
+  EXPECT_FALSE(fs::exists(Out() / "report.txt"));
+  EXPECT_EQ(Report("--no-figures --force").status, 0);
+  EXPECT_EQ(ReadAll(Out() / "thesis.txt"), "mine");
+  EXPECT_EQ(Report("--no-figures").status, 0) << "now it is a report";
+}
+
+TEST_F(ReportTest, LinksAreNotFollowed) {
+  ASSERT_EQ(Report("--no-figures").status, 0);
+  const fs::path victim = out_ / "victim";
+  std::ofstream(victim) << "mine";
+  for (const char* name :
+       {"index.html.tmp", "report.txt.tmp", "report.txt", "figures/plot.log", "figures/data.json"}) {
+    fs::remove(Out() / name);
+    fs::create_symlink(victim, Out() / name);
+  }
+  const fs::path scripts = Script("raise ValueError('no colour left')\n");
+  EXPECT_EQ(Report("", "ED3R_SCRIPTS=" + scripts.string()).status, 1);
+  EXPECT_EQ(ReadAll(victim), "mine");
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(Out() / "report.txt")));
 }
 
 TEST_F(ReportTest, JsonIsAllThatItPrints) {

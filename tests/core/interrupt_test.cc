@@ -21,5 +21,15 @@ TEST(InterruptTest, ASignalSetsTheFlagOnceAndTheNextOneEndsTheProcess) {
   InterruptFlag() = false;
 }
 
+TEST(InterruptTest, BeforeThereIsWorkASignalEndsTheProcessWithALineAndAStatus) {
+  for (const int signal : {SIGINT, SIGTERM})
+    EXPECT_EXIT(
+        {
+          EndOnInterrupt(130);
+          std::raise(signal);
+        },
+        ::testing::ExitedWithCode(130), "^ed3r: interrupted\n$");
+}
+
 }  // namespace
 }  // namespace ed3r

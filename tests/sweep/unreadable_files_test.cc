@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "engine/sweep/yaml_reader.h"
+#include "engine/core/yaml_reader.h"
 #include "tests/sweep/scratch.h"
 
 namespace ed3r {
@@ -19,10 +19,22 @@ TEST(UnreadableFilesTest, FilesThatAreNone) {
   const ScratchFolder scratch;
   EXPECT_EQ(Unreadable("nowhere/x.yaml"), "nowhere/x.yaml: cannot be read: No such file or directory");
   EXPECT_EQ(Unreadable(scratch.Path()), scratch.Path() + ": cannot be read: Is a directory");
-  EXPECT_EQ(Unreadable("/dev/null"), "/dev/null: cannot be read: not a file");
+  EXPECT_EQ(Unreadable("/dev/null"), "/dev/null: cannot be read: a device, not a file");
   EXPECT_EQ(Unreadable(""), ": cannot be read: No such file or directory");
   const std::string below_file = scratch.Write("x.yaml", "name: x") + "/y.yaml";
   EXPECT_EQ(Unreadable(below_file), below_file + ": cannot be read: Not a directory");
+}
+
+// Each file was compared with all before it.
+TEST(UnreadableFilesTest, AChainOfThousandsOfBasesEnds) {
+  const ScratchFolder scratch;
+  for (int i = 0; i < 3000; ++i)
+    scratch.Write("b" + std::to_string(i) + ".yaml", "base: b" + std::to_string(i + 1) + ".yaml\n");
+  scratch.Write("b3000.yaml", "missions: 1\n");
+  const std::string top = scratch.Write("x.yaml", "name: x\nbase: b0.yaml\n");
+  EXPECT_EQ(Unreadable(top),
+            scratch.Path() +
+                "/b18.yaml:1:7: base: 'b19.yaml' is one file too many; allowed: a chain of at most 20");
 }
 
 TEST(UnreadableFilesTest, FilesThatHoldNothing) {

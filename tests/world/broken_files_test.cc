@@ -1,7 +1,11 @@
 // Bad input: each broken world, grid and stem map with its whole message.
+#include <cpl_vsi.h>
+#include <gdal_priv.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <string>
+#include <vector>
 
 #include "engine/core/check.h"
 #include "engine/world/scene.h"
@@ -62,13 +66,31 @@ class BrokenFiles : public ::testing::Test {
 TEST_F(BrokenFiles, TheSmallWorldItselfIsFine) { EXPECT_EQ(Message(kWorld), "no error"); }
 
 TEST_F(BrokenFiles, File) {
-  EXPECT_EQ(MessageOfFile(folder.Path("none.yaml")), "none.yaml: cannot be read (No such file or directory)");
-  EXPECT_EQ(MessageOfFile(folder.Path("")), ": cannot be read (Is a directory)");
+  EXPECT_EQ(MessageOfFile(folder.Path("none.yaml")), "none.yaml: cannot be read: No such file or directory");
+  EXPECT_EQ(MessageOfFile(folder.Path("")), ": cannot be read: Is a directory");
   EXPECT_EQ(Message(""), "w.yaml:1:1: '' is not allowed; allowed: keys with values");
   EXPECT_EQ(Message("- a\n- b\n"), "w.yaml:1:1: '[...]' is not allowed; allowed: keys with values");
   EXPECT_EQ(Message(std::string(kWorld) + "---\nname: another\n"),
-            "w.yaml:18:1: a second YAML document; allowed: one");
-  EXPECT_EQ(Message("name: [a\nsize_m: 3\n"), "w.yaml:2:7: end of sequence flow not found");
+            "w.yaml:18:1: a second document is not allowed; a file holds one");
+  EXPECT_EQ(Message("name: [a\nsize_m: 3\n"), "w.yaml:2:7: not valid YAML: end of sequence flow not found");
+}
+
+TEST_F(BrokenFiles, TextIsReadAsStrictlyAsASweepFile) {
+  EXPECT_EQ(Message(With("name: small", "name: !!str small")),
+            "w.yaml:1:7: tag 'tag:yaml.org,2002:str' is not allowed");
+  EXPECT_EQ(Message(With("name: small", "name: &a small")),
+            "w.yaml:1:7: anchors and aliases are not allowed; write the value out");
+  EXPECT_EQ(Message(With("name: small", "name: |\n  two\n  lines")),
+            "w.yaml:1:7: a value of several lines or with control characters is not allowed");
+  EXPECT_EQ(Message(With("name: small", "name: sm\xe4ll")),
+            "w.yaml:1:9: byte 0xe4 is not allowed; a YAML file is UTF-8 text");
+  std::string utf16 = "\xff\xfe";
+  for (const char* c = kWorld; *c != '\0'; ++c) utf16 += {*c, '\0'};
+  EXPECT_EQ(Message(utf16), "w.yaml:1:1: byte 0xff is not allowed; a YAML file is UTF-8 text");
+  EXPECT_EQ(Message(With("name: small", "name: " + std::string(2'000'000, 'x'))),
+            "w.yaml: is too long; allowed: at most 1048576 bytes");
+  ASSERT_EQ(mkfifo(folder.Path("pipe.yaml").c_str(), 0600), 0);
+  EXPECT_EQ(MessageOfFile(folder.Path("pipe.yaml")), "pipe.yaml: cannot be read: a FIFO, not a file");
 }
 
 TEST_F(BrokenFiles, Keys) {
@@ -83,7 +105,8 @@ TEST_F(BrokenFiles, Keys) {
             "w.yaml:16:1: begin: unknown key; known here: base, name, seed, size_m, terrain, forest, sites, "
             "base_stations, start, fire");
   EXPECT_EQ(Message(With("name: small\n", "")), "w.yaml:1:1: name: is missing");
-  EXPECT_EQ(Message(With("name: small", "name: small\nname: large")), "w.yaml:2:1: name: stands here twice");
+  EXPECT_EQ(Message(With("name: small", "name: small\nname: large")),
+            "w.yaml:2:1: name: duplicate key; it stands first at w.yaml:1:1");
   EXPECT_EQ(Message(With("  generated:\n    hills", "  grid: {file: x.asc}\n  generated:\n    hills")),
             "w.yaml:4:9: terrain.grid: is not allowed together with terrain.generated");
   EXPECT_EQ(Message(With("  generated:\n    spacing_m: 8", "  slope_max: 1")),
@@ -143,14 +166,13 @@ TEST_F(BrokenFiles, Grids) {
   folder.Write("cut.asc", "ncols 11\nnrows 9\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2 3\n");
   folder.Write("text.asc", "this is no grid\n");
   EXPECT_EQ(GridMessage("    file: none.asc\n"),
-            "w.yaml:6:11: terrain.grid.file: 'none.asc': not readable as an ESRI ASCII grid or a GeoTIFF "
-            "(none.asc: No such file or directory)");
+            "w.yaml:6:11: terrain.grid.file: 'none.asc': cannot be read: No such file or directory");
   EXPECT_EQ(GridMessage("    file: text.asc\n"),
             "w.yaml:6:11: terrain.grid.file: 'text.asc': not readable as an ESRI ASCII grid or a GeoTIFF "
             "(`text.asc' not recognized as a supported file format.)");
   // The rest of this one is GDAL's own wording.
   EXPECT_TRUE(GridMessage("    file: cut.asc\n")
-                  .starts_with("w.yaml:6:11: terrain.grid.file: 'cut.asc': row 9 cannot be read ("));
+                  .starts_with("w.yaml:6:11: terrain.grid.file: 'cut.asc': row 1 cannot be read ("));
   EXPECT_EQ(GridMessage("    file: small.asc\n"),
             "w.yaml:6:11: terrain.grid: 'small.asc' is too small: offset_m + extent_m = [100, 80] m; "
             "allowed: up to [70, 80] m (8 x 9 cells of 10 m)");
@@ -167,6 +189,86 @@ TEST_F(BrokenFiles, Grids) {
   EXPECT_EQ(GridMessage("    height_scale: 2\n"), "w.yaml:6:5: terrain.grid.file: is missing");
 }
 
+// A cell as wide as many areas had no neighbour to go on from (endless recursion), and numbers that no float holds
+// became flat ground.
+TEST_F(BrokenFiles, GridsOfImpossibleNumbers) {
+  const auto grid = [&](const std::string& cell, const std::string& height) {
+    std::string text =
+        "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize " + cell + "\nNODATA_value -9999\n";
+    for (int row = 0; row < 3; ++row) text += height + " " + height + " " + height + "\n";
+    folder.Write("g.asc", text);
+    return GridMessage("    file: g.asc\n");
+  };
+  EXPECT_EQ(grid("1e12", "5"),
+            "w.yaml:6:11: terrain.grid: 'g.asc' has cells of 1e+12 x 1e+12 m; allowed for an extent of [100, "
+            "80] m: "
+            "at least one a side, at most 6e+07 in all");
+  EXPECT_EQ(grid("50", "5"), "no error");
+  for (const char* height : {"inf", "-inf", "nan", "1e39", "1e300", "-32768"})
+    EXPECT_NE(grid("50", height), "no error") << height;
+  EXPECT_EQ(
+      grid("50", "9001"),
+      "w.yaml:6:11: terrain.grid.file: 'g.asc': a height of 9001 m at [0, 0] m from the south-west cell; "
+      "allowed, after height_scale: -12000 .. 9000 m");
+  for (const char* cell : {"0", "-5", "nan", "inf", "1e-300"}) EXPECT_NE(grid(cell, "5"), "no error") << cell;
+}
+
+// As doubles, which a GeoTIFF may hold.
+TEST_F(BrokenFiles, RasterOfHeightsThatNoFloatHolds) {
+  Scene::Load(folder.Write("w.yaml", kWorld));  // registers GDAL's drivers
+  GDALDataset* raster = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      folder.Path("g.tif").c_str(), 12, 12, 1, GDT_Float64, nullptr);
+  ASSERT_NE(raster, nullptr);
+  double transform[] = {0, 10, 0, 120, 0, -10};
+  raster->SetGeoTransform(transform);
+  std::vector<double> heights(144, 1e39);
+  ASSERT_EQ(
+      raster->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, 12, 12, heights.data(), 12, 12, GDT_Float64, 0, 0),
+      CE_None);
+  GDALClose(raster);
+  EXPECT_EQ(
+      GridMessage("    file: g.tif\n"),
+      "w.yaml:6:11: terrain.grid.file: 'g.tif': a height of 1e+39 m at [0, 3] m from the south-west cell; "
+      "allowed, after height_scale: -12000 .. 9000 m");
+}
+
+// Each missing row was looked for in all those before it, which took for ever.
+TEST_F(BrokenFiles, AGridWithoutItsLastRows) {
+  std::string text = "ncols 60\nnrows 60\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+  for (int row = 0; row < 30; ++row) {
+    for (int column = 0; column < 60; ++column) text += "1 ";
+    text += "\n";
+  }
+  folder.Write("short.asc", text);
+  EXPECT_TRUE(GridMessage("    file: short.asc\n")
+                  .starts_with("w.yaml:6:11: terrain.grid.file: 'short.asc': row 31 cannot be read ("));
+}
+
+TEST_F(BrokenFiles, GridsThatAreNoFiles) {
+  ASSERT_EQ(mkfifo(folder.Path("pipe.asc").c_str(), 0600), 0);
+  EXPECT_EQ(GridMessage("    file: pipe.asc\n"),
+            "w.yaml:6:11: terrain.grid.file: 'pipe.asc': cannot be read: a FIFO, not a file");
+  for (const char* path :
+       {"/vsicurl/http://127.0.0.1:9/g.tif", "/vsistdin/", "/vsizip/g.zip/g.tif", "GTIFF_DIR:1:g.tif"})
+    EXPECT_NE(GridMessage(std::string("    file: ") + path + "\n")
+                  .find("cannot be read: No such file or directory"),
+              std::string::npos)
+        << path;
+  folder.WriteGrid("g.asc", 11, 9, 10.0, [](int, int) { return 5.0; });
+  ASSERT_EQ(mkfifo(folder.Path("g.prj").c_str(), 0600), 0);
+  EXPECT_EQ(GridMessage("    file: g.asc\n"),
+            "w.yaml:6:11: terrain.grid.file: 'g.asc': beside it stands g.prj, which is no file");
+}
+
+TEST_F(BrokenFiles, GdalOpensNoVirtualFiles) {
+  Scene::Load(folder.Write("w.yaml", kWorld));
+  folder.WriteGrid("g.asc", 11, 9, 10.0, [](int, int) { return 5.0; });
+  GridMessage("    file: g.asc\n");
+  EXPECT_EQ(VSIFOpenL("/vsicurl/http://127.0.0.1:9/x", "rb"), nullptr);
+  EXPECT_EQ(VSIFOpenL("/vsistdin/", "rb"), nullptr);
+  EXPECT_EQ(GetGDALDriverManager()->GetDriverCount(), 2);
+}
+
 TEST_F(BrokenFiles, StemMaps) {
   const auto message = [&](const std::string& csv, const std::string& more = "") {
     folder.Write("stems.csv", csv);
@@ -177,13 +279,16 @@ TEST_F(BrokenFiles, StemMaps) {
   EXPECT_EQ(message(header + rows), "no error");
   EXPECT_EQ(message("# a comment\n" + header + rows), "no error");
   EXPECT_EQ(message("x_m,y_m,height_m\n1,2,3\n"),
-            "stems.csv:1:1: no column 'dbh_cm' in the header of a stem map");
+            "stems.csv:1:1: no column 'dbh_cm' (a stem map has it); columns: x_m, y_m, height_m");
   EXPECT_EQ(message(header + rows + "5,5,20,tall,8,2\n"),
             "stems.csv:4:8: height_m: 'tall' is not allowed; allowed: 0.5 .. 130 m");
   EXPECT_EQ(message(header + rows + "5,5,20,15,16,2\n"),
             "stems.csv:4:11: crown_depth_m: '16' is not allowed; allowed: 0.1 .. 15 m");
-  EXPECT_EQ(message(header + rows + "5,5,20,15\n"), "stems.csv:4:1: 4 cells; allowed: 6, as in the header");
+  EXPECT_EQ(message(header + rows + "5,5,20,15\n"),
+            "stems.csv:4:10: 4 cells, but the header names 6 columns");
   EXPECT_EQ(message(header), "stems.csv: no trees in this stem map");
+  EXPECT_EQ(message("x_m,y_m,dbh_cm,height_m,crown_depth_m,crown_radius_m,height_m\n0,0,20,15,8,2,3\n"),
+            "stems.csv:1:54: column 'height_m' is there twice");
   EXPECT_EQ(message(header + "0,0,20,15,8,2\n3,50,20,15,8,2\n"),
             "stems.csv: the stand measures 3 x 50 m; allowed: at least 10 m a side");
   EXPECT_EQ(message(header + rows, ", extent_m: [61, 50]"),

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "engine/core/check.h"
+#include "engine/world/picture_file.h"
 
 namespace ed3r {
 namespace {
@@ -30,22 +30,10 @@ cv::Mat Enlarged(const FrameStack& stack, int frame, int scale) {
   return large;
 }
 
-void WritePng(const cv::Mat& picture, const std::string& path) {
-  bool written = false;
-  try {
-    written = cv::imwrite(path, picture);
-  } catch (const cv::Exception&) {
-    written = false;  // OpenCV knows no encoder for this ending
-  }
-  if (!written)
-    throw UserError(
-        fmt::format("{}: the picture cannot be written; is the folder there and writable?", path));
-}
-
 }  // namespace
 
 void WriteFrame(const FrameStack& stack, int frame, const std::string& path, int scale) {
-  WritePng(Enlarged(stack, frame, scale), path);
+  WritePicture(Enlarged(stack, frame, scale), path);
 }
 
 void WriteContactSheet(const FrameStack& stack, const std::vector<std::string>& captions,
@@ -65,7 +53,7 @@ void WriteContactSheet(const FrameStack& stack, const std::vector<std::string>& 
                   {x, y + scale * stack.height_px + kCaptionPx - 4}, cv::FONT_HERSHEY_SIMPLEX, 0.4,
                   cv::Scalar(48, 44, 40), 1, cv::LINE_AA);
   }
-  WritePng(sheet, path);
+  WritePicture(sheet, path);
 }
 
 void WriteFramePictures(const Renderer& renderer, const Pose& pose, std::uint32_t timestep,

@@ -1,11 +1,7 @@
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "engine/core/sha256.h"
 #include "engine/perception/vision/builtin_detector.h"
 #include "engine/perception/vision/frame_detector.h"
@@ -18,13 +14,10 @@ namespace {
 constexpr std::string_view kBuiltin = "builtin";
 
 std::string ReadBytes(const std::string& key, const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes;
-  if (file) bytes.assign(std::istreambuf_iterator<char>(file), {});
-  if (!file || file.bad())
-    throw UserError(
-        fmt::format("{}: {}: cannot be read: {}; 'builtin' or the path of an ONNX model is allowed", key,
-                    path, std::strerror(errno)));
+  std::string bytes, why;
+  if (!TryReadFile(path, kMaxModelBytes, bytes, why))
+    throw UserError(fmt::format(
+        "{}: {}: cannot be read: {}; 'builtin' or the path of an ONNX model is allowed", key, path, why));
   return bytes;
 }
 

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/dnn.hpp>
 #include <vector>
 
 #include "engine/core/check.h"
+#include "engine/perception/vision/onnx_gate.h"
 #include "engine/perception/vision/pool.h"
 #include "engine/perception/vision/resize.h"
 
@@ -20,9 +22,7 @@ int Quiet(int, const char*, const char*, const char*, int, void*) { return 0; }
 
 // The last line of OpenCV's message, without its version and source file.
 std::string Reason(const cv::Exception& error) {
-  std::string reason = error.err.empty() ? std::string(error.what()) : std::string(error.err);
-  std::replace(reason.begin(), reason.end(), '\n', ' ');
-  return reason;
+  return error.err.empty() ? std::string(error.what()) : std::string(error.err);
 }
 
 class OnnxDetector final : public FrameDetector {
@@ -33,6 +33,7 @@ class OnnxDetector final : public FrameDetector {
         bytes_(std::move(bytes)),
         config_(config),
         networks_([this] { return Load(); }) {
+    CheckOnnx(bytes_, name_);
     cv::setNumThreads(1);
     cv::redirectError(Quiet);
     try {
@@ -76,6 +77,8 @@ class OnnxDetector final : public FrameDetector {
       return network;
     } catch (const cv::Exception& error) {
       Refuse(fmt::format("is no ONNX model that OpenCV can read: {}", Reason(error)));
+    } catch (const std::bad_alloc&) {
+      Refuse("asks for more memory than there is");
     }
   }
 

@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kMaxSide_px = 4096;
 constexpr int kMaxChannels = 65536;
+constexpr std::int64_t kMaxValues = 1 << 27;  // between two layers
 
 void Require(bool condition, const Topology& topology, const std::string& why) {
   if (!condition) throw UserError(fmt::format("{}: {}", topology.name, why));
@@ -51,6 +52,10 @@ std::vector<LayerShape> Layers(const Topology& topology) {
                       .kernel_width = c.kernel,
                       .stride = c.stride,
                       .padding = padding});
+    const LayerShape& made = layers.back();
+    Require(std::int64_t{made.out_channels} * made.out_height * made.out_width <= kMaxValues, topology,
+            fmt::format("a convolution that makes {} x {} x {} values", made.out_channels, made.out_height,
+                        made.out_width));
     channels = c.channels;
     height = layers.back().out_height;
     width = layers.back().out_width;

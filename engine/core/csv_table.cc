@@ -1,4 +1,4 @@
-#include "studies/fit/csv_table.h"
+#include "engine/core/csv_table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
+#include <set>
 #include <utility>
 
 #include "engine/core/check.h"
+#include "engine/core/file.h"
+#include "engine/core/message.h"
 #include "engine/core/suggest.h"
 
 namespace ed3r {
@@ -38,55 +39,61 @@ void ForEachCell(std::string_view line, Action action) {
 
 }  // namespace
 
-CsvTable CsvTable::Read(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw UserError(fmt::format("{}: cannot be read", path));
-  std::ostringstream text;
-  text << file.rdbuf();
-  return Parse(path, std::move(text).str());
+CsvTable CsvTable::Read(const std::string& path, CsvComments comments) {
+  return Parse(path, ReadFile(path, kMaxTextBytes), comments);
 }
 
-CsvTable CsvTable::Parse(std::string path, std::string text) {
+CsvTable CsvTable::Parse(std::string path, std::string text, CsvComments comments) {
   CsvTable table;
   table.path_ = std::move(path);
   table.text_ = std::move(text);
+  ED3R_CHECK(table.text_.size() <= kMaxTextBytes, table.path_);  // cells are found by 32 bits
   const std::string_view all = table.text_;
-  std::size_t begin = all.starts_with("\xEF\xBB\xBF") ? 3 : 0;
   int first_blank = 0;
-  for (int number = 1; begin < all.size(); ++number) {
-    const std::size_t newline = std::min(all.find('\n', begin), all.size());
+  std::size_t next = all.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+  for (int number = 1; next < all.size(); ++number) {
+    const std::size_t begin = next, newline = std::min(all.find('\n', begin), all.size());
+    next = newline + 1;
     std::string_view line = all.substr(begin, newline - begin);
     if (line.ends_with('\r')) line.remove_suffix(1);
-    if (Trimmed(line).empty()) {
+    const bool blank = Trimmed(line).empty();
+    if (comments == CsvComments::kHash && (blank || line.starts_with('#'))) continue;
+    if (blank) {
       if (first_blank == 0) first_blank = number;
     } else if (first_blank != 0) {
       throw UserError(fmt::format("{}:{}:1: blank line inside the table", table.path_, first_blank));
     } else if (table.columns_.empty()) {
-      table.ReadHeader(line);
+      table.ReadHeader(line, number);
     } else {
       table.ReadRow(begin, line, number);
     }
-    begin = newline + 1;
   }
   if (table.columns_.empty())
     throw UserError(fmt::format("{}:1:1: empty file; a header line was expected", table.path_));
   return table;
 }
 
-void CsvTable::ReadHeader(std::string_view line) {
+void CsvTable::ReadHeader(std::string_view line, int number) {
+  header_line_ = number;
+  std::set<std::string, std::less<>> names;
   ForEachCell(line, [&](std::size_t begin, std::size_t end) {
     const std::string name(Trimmed(line.substr(begin, end - begin)));
-    if (name.empty())
-      throw UserError(fmt::format("{}:1:{}: column {} has no name", path_, begin + 1, columns_.size() + 1));
-    if (std::find(columns_.begin(), columns_.end(), name) != columns_.end())
-      throw UserError(fmt::format("{}:1:{}: column '{}' is there twice", path_, begin + 1, name));
+    const auto refuse = [&](const std::string& problem) {
+      throw UserError(OneLine(fmt::format("{}:{}:{}: {}", path_, number, begin + 1, problem)));
+    };
+    if (columns_.size() == kMaxCsvColumns)
+      refuse(fmt::format("more columns than are allowed ({})", kMaxCsvColumns));
+    if (name.empty()) refuse(fmt::format("column {} has no name", columns_.size() + 1));
+    if (!names.insert(name).second) refuse(fmt::format("column '{}' is there twice", name));
     columns_.push_back(name);
   });
 }
 
 void CsvTable::ReadRow(std::size_t begin, std::string_view line, int number) {
   const std::size_t before = cells_.size();
-  ForEachCell(line, [&](std::size_t from, std::size_t to) { cells_.push_back({begin + from, begin + to}); });
+  ForEachCell(line, [&](std::size_t from, std::size_t to) {
+    cells_.push_back({static_cast<std::uint32_t>(begin + from), static_cast<std::uint32_t>(begin + to)});
+  });
   const std::size_t found = cells_.size() - before;
   if (found != columns_.size())
     throw UserError(fmt::format("{}:{}:{}: {} cells, but the header names {} columns", path_, number,
@@ -99,9 +106,9 @@ std::size_t CsvTable::Column(std::string_view name, std::string_view what) const
   const auto found = std::find(columns_.begin(), columns_.end(), name);
   if (found != columns_.end()) return static_cast<std::size_t>(found - columns_.begin());
   const std::string nearest = NearestWord(name, columns_);
-  throw UserError(fmt::format("{}:1:1: no column '{}' ({}); {}columns: {}", path_, name, what,
-                              nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest),
-                              fmt::join(columns_, ", ")));
+  throw UserError(OneLine(fmt::format(
+      "{}:{}:1: no column '{}' ({}); {}columns: {}", path_, header_line_, name, what,
+      nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest), fmt::join(columns_, ", "))));
 }
 
 std::string_view CsvTable::Cell(std::size_t row, std::size_t column) const {

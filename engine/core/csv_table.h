@@ -1,4 +1,4 @@
-// A strict reader for numeric CSV files: every complaint names file, line, character column and column name.
+// A strict reader for CSV files of numbers: every complaint names file, line, character column and column name.
 //
 // Own code because Debian's CSV libraries do not fit: libcsv reports no positions, fast-cpp-csv-parser fixes
 // the columns at compile time, GDAL's driver repairs what should be refused. Numbers are read by
@@ -7,20 +7,26 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace ed3r {
 
+// Whether lines that begin with # are left out, blank ones too, wherever they stand.
+enum class CsvComments { kNone, kHash };
+
+inline constexpr std::size_t kMaxCsvColumns = 10000;
+
 // Immutable once read; share it between threads freely.
 class CsvTable {
  public:
   // Throws UserError: unreadable or empty file, a repeated or empty column name, a row with another number of
-  // cells.
-  static CsvTable Read(const std::string& path);
+  // cells, more than kMaxCsvColumns columns or kMaxTextBytes (file.h).
+  static CsvTable Read(const std::string& path, CsvComments comments = CsvComments::kNone);
   // The same from text; `path` only names it in messages.
-  static CsvTable Parse(std::string path, std::string text);
+  static CsvTable Parse(std::string path, std::string text, CsvComments comments = CsvComments::kNone);
 
   CsvTable(CsvTable&&) = default;
 
@@ -42,15 +48,16 @@ class CsvTable {
 
  private:
   struct Span {
-    std::size_t begin, end;
+    std::uint32_t begin, end;
   };
 
   CsvTable() = default;
-  void ReadHeader(std::string_view line);
+  void ReadHeader(std::string_view line, int number);
   void ReadRow(std::size_t begin, std::string_view line, int number);
 
   std::string path_;
   std::string text_;
+  int header_line_ = 1;
   std::vector<std::string> columns_;
   std::vector<Span> cells_;  // rows x columns, into text_
   std::vector<std::size_t> row_begin_;

@@ -41,7 +41,10 @@ struct YamlFile {
 
 YamlFile ReadYamlFile(const std::string& file);
 
-// Throws UserError "at: clause", with control characters escaped so that it stays one line.
+// The same from text; `file` names it in messages.
+YamlFile ParseYaml(const std::string& file, const std::string& text);
+
+// Throws UserError "at: clause", as one line (message.h).
 [[noreturn]] void FailAt(std::string_view at, std::string_view clause);
 
 // What a node is, for messages: "'text'", "a list", "a map", "nothing".

@@ -1,4 +1,4 @@
-#include "engine/sweep/yaml_reader.h"
+#include "engine/core/yaml_reader.h"
 
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
@@ -6,38 +6,22 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <sstream>
-#include <system_error>
 
 #include "engine/core/check.h"
+#include "engine/core/file.h"
+#include "engine/core/message.h"
 #include "engine/core/suggest.h"
+#include "engine/core/utf8.h"
 
 namespace ed3r {
 namespace {
 
 bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
-
-// Bytes of the UTF-8 character that starts at `text`, 0 when it is malformed.
-std::size_t Utf8Length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char lead = byte(0);
-  if (lead < 0x80) return 1;
-  const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
-  if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  const bool overlong = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xf0 && byte(1) < 0x90);
-  const bool surrogate_or_beyond = (lead == 0xed && byte(1) > 0x9f) || (lead == 0xf4 && byte(1) > 0x8f);
-  return overlong || surrogate_or_beyond ? 0 : length;
-}
 
 // Checked before the YAML parser sees the text: it would guess encodings and accept raw bytes.
 void CheckText(const std::string& file, std::string_view text) {
@@ -59,25 +43,6 @@ void CheckText(const std::string& file, std::string_view text) {
       line_start = i;
     }
   }
-}
-
-std::string ReadText(const std::string& file) {
-  const auto refuse = [&](const std::string& problem) { FailAt(file, "cannot be read: " + problem); };
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (error) refuse(error.message());
-  if (status.type() == std::filesystem::file_type::directory) refuse(std::generic_category().message(EISDIR));
-  if (status.type() != std::filesystem::file_type::regular) refuse("not a file");
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) refuse(std::generic_category().message(errno));
-  std::string text(kMaxYamlFileLength + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (in.bad()) refuse("input error");
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (text.size() > kMaxYamlFileLength)
-    FailAt(file, fmt::format("is too long; allowed: at most {} bytes", kMaxYamlFileLength));
-  return text;
 }
 
 std::string FirstComment(std::string_view text) {
@@ -215,8 +180,9 @@ class TreeBuilder : public YAML::EventHandler {
 
 }  // namespace
 
-YamlFile ReadYamlFile(const std::string& file) {
-  const std::string text = ReadText(file);
+YamlFile ReadYamlFile(const std::string& file) { return ParseYaml(file, ReadFile(file, kMaxYamlFileLength)); }
+
+YamlFile ParseYaml(const std::string& file, const std::string& text) {
   CheckText(file, text);
   TreeBuilder tree(file);
   try {
@@ -237,16 +203,7 @@ YamlFile ReadYamlFile(const std::string& file) {
 }
 
 void FailAt(std::string_view at, std::string_view clause) {
-  const std::string message = fmt::format("{}: {}", at, clause);
-  std::string line;
-  for (const char c : message) {
-    if (IsControl(c)) {
-      line += fmt::format("\\x{:02x}", static_cast<unsigned>(c));
-    } else {
-      line += c;
-    }
-  }
-  throw UserError(line);
+  throw UserError(OneLine(fmt::format("{}: {}", at, clause)));
 }
 
 std::string Described(const YamlNode& node) {

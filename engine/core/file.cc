@@ -1,0 +1,177 @@
+#include "engine/core/file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <random>
+#include <system_error>
+
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kBufferBytes = 1 << 16;
+
+std::string KindOf(mode_t mode) {
+  if (S_ISDIR(mode)) return "Is a directory";
+  if (S_ISFIFO(mode)) return "a FIFO, not a file";
+  if (S_ISCHR(mode) || S_ISBLK(mode)) return "a device, not a file";
+  return "not a file";
+}
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+// Nothing at the end of the file may block: asked before opening, because opening a device may act on it, and once
+// more of what was opened. Returns why not, or "".
+std::string Refusal(const std::string& path, struct stat& found, int descriptor) {
+  const int status = descriptor < 0 ? ::stat(path.c_str(), &found) : ::fstat(descriptor, &found);
+  if (status != 0) return std::strerror(errno);
+  return S_ISREG(found.st_mode) ? "" : KindOf(found.st_mode);
+}
+
+int OpenToRead(const std::string& path) {
+  return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+}
+
+// The new name itself must survive a crash. A file system that cannot sync a directory is no reason to fail.
+void SyncFolderOf(const fs::path& path) {
+  const fs::path parent = path.parent_path();
+  const int directory = ::open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (directory < 0) return;
+  ::fsync(directory);
+  ::close(directory);
+}
+
+}  // namespace
+
+std::string WhyNoRegularFile(const std::string& path) {
+  struct stat found = {};
+  if (std::string why = Refusal(path, found, -1); !why.empty()) return why;
+  return ::access(path.c_str(), R_OK) == 0 ? "" : std::strerror(errno);
+}
+
+bool TryReadFile(const std::string& path, std::uintmax_t max_bytes, std::string& content, std::string& why) {
+  struct stat found = {};
+  why = Refusal(path, found, -1);
+  if (!why.empty()) return false;
+  const Descriptor file(OpenToRead(path));
+  why = file.number() < 0 ? std::strerror(errno) : Refusal(path, found, file.number());
+  if (!why.empty()) return false;
+  const auto refuse_length = [&] {
+    why = fmt::format("is too long; allowed: at most {} bytes", max_bytes);
+    return false;
+  };
+  if (static_cast<std::uintmax_t>(found.st_size) > max_bytes) return refuse_length();
+  content.clear();
+  content.reserve(static_cast<std::size_t>(found.st_size));
+  std::array<char, kBufferBytes> block;
+  while (true) {
+    const ssize_t size = ::read(file.number(), block.data(), block.size());
+    if (size == 0) return true;
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0) {
+      why = std::strerror(errno);
+      return false;
+    }
+    content.append(block.data(), static_cast<std::size_t>(size));
+    if (content.size() > max_bytes) return refuse_length();  // it grew, or tells no size
+  }
+}
+
+std::string ReadFile(const std::string& path, std::uintmax_t max_bytes) {
+  std::string content, why;
+  if (!TryReadFile(path, max_bytes, content, why))
+    throw UserError(fmt::format("{}: {}{}", path, why.starts_with("is ") ? "" : "cannot be read: ", why));
+  return content;
+}
+
+AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
+  struct stat found = {};
+  if (::lstat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode) && !S_ISLNK(found.st_mode))
+    throw UserError(fmt::format("{}: cannot be written: {}", path.string(), KindOf(found.st_mode)));
+  std::random_device random;
+  for (int attempt = 0; descriptor_ < 0; ++attempt) {
+    temporary_ = path.parent_path() / fmt::format(".ed3r-{:08x}{:08x}.tmp", random(), random());
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && (errno != EEXIST || attempt == 100)) Fail(errno);
+  }
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::Fail(int error) {
+  throw UserError(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(error)));
+}
+
+void AtomicFile::Write(std::string_view bytes) {
+  buffer_ += bytes;
+  if (buffer_.size() >= kBufferBytes) Flush();
+}
+
+void AtomicFile::Flush() {
+  std::string_view left = buffer_;
+  while (!left.empty()) {
+    const ssize_t written = ::write(descriptor_, left.data(), left.size());
+    if (written >= 0)
+      left.remove_prefix(static_cast<std::size_t>(written));
+    else if (errno != EINTR)
+      Fail(errno);
+  }
+  buffer_.clear();
+}
+
+void AtomicFile::Commit() {
+  ED3R_CHECK(descriptor_ >= 0, path_.string());
+  Flush();
+  if (::fsync(descriptor_) != 0 && errno != EINVAL) Fail(errno);
+  // Closed by hand: some file systems tell of a failed write only here.
+  const int closed = ::close(descriptor_);
+  int error = closed != 0 ? errno : 0;
+  descriptor_ = -1;
+  if (error == 0 && ::rename(temporary_.c_str(), path_.c_str()) != 0) error = errno;
+  if (error != 0) {
+    ::unlink(temporary_.c_str());
+    Fail(error);
+  }
+  SyncFolderOf(path_);
+}
+
+void WriteFile(const fs::path& path, std::string_view content) {
+  AtomicFile file(path);
+  file.Write(content);
+  file.Commit();
+}
+
+void MakeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  // A link to a folder counts as one, which create_directories does not always see.
+  if (error && !fs::is_directory(folder))
+    throw UserError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+}
+
+}  // namespace ed3r

@@ -1,0 +1,54 @@
+// The one way in and the one way out for whole files.
+//
+// In: only regular files are opened, whatever a library would do with a FIFO, a device or a folder, and none longer
+// than the caller allows. Out: a file is written under a name that nobody can guess beside its place (never through a
+// link), flushed to disk and renamed, so that readers see the old file or the new one, also after a crash.
+// Errors: UserError, one line that begins with the path. Threads: nothing is shared.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace ed3r {
+
+inline constexpr std::uintmax_t kMaxTextBytes = 256u << 20;  // logs, stem maps
+inline constexpr std::uintmax_t kMaxModelBytes = 1u << 30;   // networks, pictures
+
+// Why the path is no regular file that can be opened ("No such file or directory", "a FIFO, not a file"), or "".
+std::string WhyNoRegularFile(const std::string& path);
+
+// "path: cannot be read: why" as UserError, or the file's whole content.
+std::string ReadFile(const std::string& path, std::uintmax_t max_bytes = kMaxTextBytes);
+
+// The same for callers with words of their own: false and why, in place of throwing.
+bool TryReadFile(const std::string& path, std::uintmax_t max_bytes, std::string& content, std::string& why);
+
+// A file that appears whole or not at all. Unless committed, the destructor removes what was written.
+class AtomicFile {
+ public:
+  // Refuses a place where something other than a file or a link stands; a link is replaced, never followed.
+  explicit AtomicFile(const std::filesystem::path& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void Write(std::string_view bytes);
+  void Commit();  // the last call; syncs the file, renames it, syncs its folder
+
+ private:
+  void Flush();
+  [[noreturn]] void Fail(int error);
+
+  std::filesystem::path path_, temporary_;
+  std::string buffer_;
+  int descriptor_ = -1;
+};
+
+void WriteFile(const std::filesystem::path& path, std::string_view content);
+
+// Makes the folder and those above it where they are missing.
+void MakeFolder(const std::filesystem::path& folder);
+
+}  // namespace ed3r

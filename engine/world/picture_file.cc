@@ -1,0 +1,133 @@
+#include "engine/world/picture_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <vector>
+
+#include "engine/core/check.h"
+#include "engine/core/file.h"
+
+namespace ed3r {
+namespace {
+
+constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
+constexpr std::string_view kJpegMagic = "\xff\xd8\xff";
+
+class HeaderReader {
+ public:
+  HeaderReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+
+  PictureSides Read() {
+    if (bytes_.starts_with(kPngMagic)) return Checked(Png());
+    if (bytes_.starts_with(kJpegMagic)) return Checked(Jpeg());
+    Refuse("is neither a PNG nor a JPEG picture");
+  }
+
+ private:
+  [[noreturn]] void Refuse(const std::string& why) const {
+    throw UserError(fmt::format("{}: {}", name_, why));
+  }
+
+  // Big-endian, of `size` bytes.
+  std::uint32_t Number(std::size_t at, std::size_t size) const {
+    if (at > bytes_.size() || size > bytes_.size() - at) Refuse("is cut short");
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < size; ++i) value = value << 8 | static_cast<unsigned char>(bytes_[at + i]);
+    return value;
+  }
+
+  struct Sides {
+    std::uint32_t width, height;
+  };
+
+  // Chunks: length, name, data, checksum. The first tells the sides, the last is IEND.
+  Sides Png() const {
+    constexpr std::size_t kFrame = 12;
+    std::size_t at = kPngMagic.size();
+    const std::size_t header = at;
+    if (bytes_.substr(at + 4, 4) != "IHDR") Refuse("is damaged: its header does not stand first");
+    while (true) {
+      const std::uint32_t length = Number(at, 4);
+      const bool last = bytes_.substr(std::min(at + 4, bytes_.size()), 4) == "IEND";
+      if (bytes_.size() - at < kFrame || bytes_.size() - at - kFrame < length) Refuse("is cut short");
+      if (last) break;
+      at += kFrame + length;
+    }
+    return {Number(header + 8, 4), Number(header + 12, 4)};
+  }
+
+  // Segments: marker, length, data. A frame header (SOF) tells the sides.
+  Sides Jpeg() const {
+    std::size_t at = 2;
+    while (true) {
+      if (Number(at, 1) != 0xff) Refuse("is damaged: a marker is missing");
+      const std::uint32_t marker = Number(at + 1, 1);
+      if (marker == 0xff) {  // a fill byte
+        ++at;
+        continue;
+      }
+      const bool frame =
+          marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+      if (frame) break;
+      if (marker == 0xd9 || marker == 0xda) Refuse("is damaged: its sides are not told before its pixels");
+      const bool bare = marker == 0x01 || (marker >= 0xd0 && marker <= 0xd8);
+      const std::uint32_t length = bare ? 0 : Number(at + 2, 2);
+      if (!bare && length < 2) Refuse("is damaged: a segment without a length");
+      at += 2 + length;
+    }
+    const Sides sides{Number(at + 7, 2), Number(at + 5, 2)};
+    const std::size_t end = bytes_.rfind("\xff\xd9");
+    if (end == std::string_view::npos || end < at) Refuse("is cut short");
+    return sides;
+  }
+
+  PictureSides Checked(Sides sides) const {
+    const bool good = sides.width >= 1 && sides.height >= 1 && sides.width <= kMaxPictureSidePx &&
+                      sides.height <= kMaxPictureSidePx &&
+                      std::uint64_t{sides.width} * sides.height <= kMaxPicturePixels;
+    if (!good)
+      Refuse(fmt::format("a picture of {} x {} pixels; allowed: sides of 1 .. {}, at most {} pixels",
+                         sides.width, sides.height, kMaxPictureSidePx, kMaxPicturePixels));
+    return {static_cast<int>(sides.width), static_cast<int>(sides.height)};
+  }
+
+  std::string_view bytes_;
+  const std::string& name_;
+};
+
+}  // namespace
+
+PictureSides ReadPictureSides(std::string_view bytes, const std::string& name) {
+  return HeaderReader(bytes, name).Read();
+}
+
+cv::Mat ReadPicture(const std::string& path) {
+  const std::string bytes = ReadFile(path);
+  ReadPictureSides(bytes, path);
+  cv::Mat picture;
+  try {
+    const cv::Mat wrapped(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
+    picture = cv::imdecode(wrapped, cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {
+    picture.release();
+  }
+  if (picture.empty()) throw UserError(fmt::format("{}: is no picture that can be read", path));
+  return picture;
+}
+
+void WritePicture(const cv::Mat& picture, const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (ending != ".png" && ending != ".jpg" && ending != ".jpeg")
+    throw UserError(fmt::format("{}: cannot be written; allowed endings: .png, .jpg", path));
+  std::vector<unsigned char> bytes;
+  ED3R_CHECK(cv::imencode(ending, picture, bytes), path);
+  WriteFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+}  // namespace ed3r

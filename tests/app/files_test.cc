@@ -1,0 +1,155 @@
+// Files that are none, or hold what no program wrote: one line, the right exit status, nothing touched.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+
+#include "tests/app/command.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kCorpus = ED3R_SOURCE_DIR "/tests/fuzz/corpus/";
+
+void ExpectOneLine(const CommandResult& result, int status, const std::string& part) {
+  EXPECT_EQ(result.status, status) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("failed inside"), std::string::npos) << result.err;
+  EXPECT_LE(result.err.size(), 501u);
+}
+
+// A small run, and copies of it with one statement of SQL.
+class StoredFilesTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    flown_ = new ScratchFolder;
+    const CommandResult result = Ed3r(fmt::format("run {}/sweeps/rbs.yaml --missions 4 --quiet --out {}",
+                                                  ED3R_SOURCE_DIR, (*flown_ / "run").string()));
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  static void TearDownTestSuite() { delete flown_; }
+
+  std::string Altered(const std::string& sql) {
+    fs::remove_all(scratch_ / "run");
+    fs::copy(*flown_ / "run", scratch_ / "run", fs::copy_options::recursive);
+    sqlite3* database = nullptr;
+    EXPECT_EQ(sqlite3_open((scratch_ / "run" / "results.sqlite").c_str(), &database), SQLITE_OK);
+    char* problem = nullptr;
+    EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, &problem), SQLITE_OK) << problem;
+    sqlite3_close(database);
+    return (scratch_ / "run").string();
+  }
+
+  static ScratchFolder* flown_;
+  ScratchFolder scratch_;
+};
+ScratchFolder* StoredFilesTest::flown_ = nullptr;
+
+TEST_F(StoredFilesTest, TablesThatCannotBeAreRefusedInOneLine) {
+  for (const char* sql :
+       {"UPDATE recipe SET value = 'many' WHERE key = 'seed'", "DELETE FROM recipe WHERE key = 'plan'",
+        "DELETE FROM recipe WHERE key = 'seed'", "UPDATE runs SET stage = 7",
+        "UPDATE runs SET arm = 1073741824", "UPDATE runs SET run = 1099511627776",
+        "UPDATE stages SET missions = -1", "UPDATE stages SET stage = 3",
+        "UPDATE runs SET first_scenario = -5", "DROP TABLE recipe", "DROP TABLE runs",
+        "UPDATE session_notes SET value = CAST(x'ff41' AS TEXT)"}) {
+    SCOPED_TRACE(sql);
+    ExpectOneLine(Ed3r("report --no-figures " + Altered(sql)), 2, "results.sqlite: the file is damaged (");
+  }
+}
+
+TEST_F(StoredFilesTest, EveryValueOfAStoreIsEscapedInThePage) {
+  const std::string run = Altered(
+      "UPDATE worlds SET fingerprint = '<script>alert(1)</script>'; UPDATE sessions SET begun_utc = "
+      "'<b>now'; "
+      "UPDATE session_notes SET value = '<q>' || value");
+  ASSERT_EQ(Ed3r("report --no-figures " + run).status, 0);
+  const std::string page = ReadAll(fs::path(run) / "report" / "index.html");
+  EXPECT_NE(page.find("&lt;script&gt;alert(1)"), std::string::npos);
+  for (const char* raw : {"<script", "<b>now", "<q>"}) EXPECT_EQ(page.find(raw), std::string::npos) << raw;
+}
+
+TEST_F(StoredFilesTest, WhatStandsInTheStoresPlaceIsNamed) {
+  fs::create_directories(scratch_ / "a" / "results.sqlite");
+  ExpectOneLine(Ed3r("digest " + (scratch_ / "a").string()), 2,
+                "results.sqlite: cannot be read: Is a directory");
+  fs::create_directories(scratch_ / "b");
+  ASSERT_EQ(mkfifo((scratch_ / "b" / "results.sqlite").c_str(), 0600), 0);
+  ExpectOneLine(Ed3r("status " + (scratch_ / "b").string()), 2,
+                "results.sqlite: cannot be read: a FIFO, not a file");
+  const std::string sweep = ED3R_SOURCE_DIR "/sweeps/rbs.yaml --missions 1 --out ";
+  ExpectOneLine(Ed3r("run " + sweep + (scratch_ / "b").string()), 2, "a FIFO, not a file");
+}
+
+TEST_F(StoredFilesTest, APlaceThatCannotBeWrittenIsBadInput) {
+  const std::string run = (*flown_ / "run").string();
+  ExpectOneLine(Ed3r("replay " + run + " rbs/0 --out /proc/nowhere"), 2, "/proc/nowhere: cannot be made");
+  ExpectOneLine(Ed3r("report --no-figures " + run + " --out /proc/nowhere"), 2,
+                "/proc/nowhere: cannot be made");
+}
+
+TEST_F(StoredFilesTest, OutputThatDoesNotArriveIsAnError) {
+  for (const char* command : {"digest", "status", "report --no-figures", "status --json"}) {
+    const std::string line = fmt::format("{} {} {} >/dev/full 2>{}", ED3R_BINARY, command,
+                                         (*flown_ / "run").string(), (scratch_ / "err").string());
+    const int status = std::system(line.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 1) << command;
+    const std::string said = ReadAll(scratch_ / "err");
+    EXPECT_TRUE(said.starts_with("ed3r: standard output cannot be written")) << said;
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  }
+}
+
+TEST(FilesTest, AnEmptyPathIsRefused) {
+  const std::string rbs = ED3R_SOURCE_DIR "/sweeps/rbs.yaml --missions 1 ";
+  for (const std::string& command :
+       {"run " + rbs + "--out ''", "run " + rbs + "--out=", "run " + rbs + "--cache ''",
+        std::string("report x --out ''"), std::string("fit x --out ''"), std::string("frames --out ''"),
+        std::string("world x --picture ''"), std::string("replay x rbs/0 --out ''"),
+        std::string("compare x y --out ''")})
+    ExpectOneLine(Ed3r(command), 2, "'' is not allowed; allowed: a path");
+}
+
+TEST(FilesTest, ArgumentsAreText) {
+  ExpectOneLine(Ed3r("digest \xff"), 2, "ed3r: argument 2 is not UTF-8 text");
+}
+
+TEST(FilesTest, PicturesFramesAndModelsOfImpossibleSizesAreRefused) {
+  const ScratchFolder scratch;
+  const auto frames = [&](const std::string& npy) {
+    fs::create_directories(scratch / npy);
+    fs::copy_file(kCorpus + "npy/" + npy, scratch / npy / "frames.npy");
+    std::ofstream(scratch / npy / "labels.csv")
+        << "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label\n";
+    return Ed3r("detect " + (scratch / npy).string());
+  };
+  ExpectOneLine(frames("overflow.npy"), 2, "frames of 65536 x 65536 pixels");
+  ExpectOneLine(frames("empty_frames.npy"), 2, "2 frames of 3 x 0 pixels");
+  ExpectOneLine(Ed3r("detect " + kCorpus + "picture/huge.png"), 2, "a picture of 60000 x 60000 pixels");
+  ExpectOneLine(Ed3r("detect " + kCorpus + "picture/small.png --set perception.detector.full=" + kCorpus +
+                     "onnx/hugedim.onnx"),
+                2, "has a tensor 'w' with the shape [1099511627776, 1]");
+  ASSERT_EQ(mkfifo((scratch / "pipe.png").c_str(), 0600), 0);
+  ExpectOneLine(Ed3r("detect " + (scratch / "pipe.png").string()), 2, "a FIFO, not a file");
+  ExpectOneLine(Ed3r("detect " + kCorpus + "picture/small.png --set perception.detector.full=/dev/zero"), 2,
+                "a device, not a file");
+  ExpectOneLine(Ed3r("fit " + (scratch / "pipe.png").string()), 2, "a FIFO, not a file");
+}
+
+TEST(FilesTest, TooLittleMemoryIsSaidInOneLine) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer needs more than any limit";
+#endif
+  const ScratchFolder scratch;
+  std::ofstream(scratch / "frames.npy") << "x";
+  fs::resize_file(scratch / "frames.npy", 8'000'000'000);  // takes no place on the disk
+  ExpectOneLine(Ed3r("detect " + scratch.Path().string(), "ulimit -v 6000000;"), 1, "ed3r: out of memory");
+}
+
+}  // namespace
+}  // namespace ed3r

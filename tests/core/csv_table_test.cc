@@ -1,0 +1,49 @@
+#include "engine/core/csv_table.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+std::string Refusal(const std::string& text, CsvComments comments = CsvComments::kNone) {
+  try {
+    CsvTable::Parse("t.csv", text, comments);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(CsvTableTest, ADuplicateColumnIsRefused) {
+  EXPECT_EQ(Refusal("a,b,a\n1,2,3\n"), "t.csv:1:5: column 'a' is there twice");
+  EXPECT_EQ(Refusal("# note\na,a\n", CsvComments::kHash), "t.csv:2:3: column 'a' is there twice");
+}
+
+TEST(CsvTableTest, CommentsAndBlankLinesStandAnywhereWhereTheyAreAllowed) {
+  const CsvTable table = CsvTable::Parse("t.csv", "# note\n\na,b\n1,2\n# more\n\n3,4\n", CsvComments::kHash);
+  EXPECT_EQ(table.rows(), 2u);
+  EXPECT_EQ(table.Line(1), 7);
+  EXPECT_EQ(table.Number(1, 1, 0, 10), 4.0);
+  EXPECT_EQ(Refusal("a\n1\n\n2\n"), "t.csv:3:1: blank line inside the table");
+}
+
+TEST(CsvTableTest, VeryManyColumnsAreRefusedAtOnce) {
+  std::string header;
+  for (int i = 0; i < 2'000'000; ++i) header += "c" + std::to_string(i) + ",";
+  EXPECT_EQ(Refusal(header + "z\n"), "t.csv:1:58891: more columns than are allowed (10000)");
+}
+
+TEST(CsvTableTest, AMessageStaysShortWhateverTheColumnsAreCalled) {
+  const CsvTable table = CsvTable::Parse("t.csv", std::string(1'000'000, 'x') + "\n1\n");
+  try {
+    table.Column("height_m", "wanted");
+    ADD_FAILURE();
+  } catch (const UserError& error) {
+    EXPECT_LE(std::string(error.what()).size(), 500u);
+  }
+}
+
+}  // namespace
+}  // namespace ed3r

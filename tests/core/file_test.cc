@@ -1,0 +1,127 @@
+#include "engine/core/file.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FileTest : public ::testing::Test {
+ protected:
+  FileTest() {
+    std::string pattern = (fs::temp_directory_path() / "ed3r_file_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~FileTest() override { fs::remove_all(folder_); }
+
+  static std::string Content(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  // What the call says, with the test's folder cut away.
+  template <class Call>
+  std::string Refusal(Call call) const {
+    try {
+      call();
+    } catch (const UserError& error) {
+      std::string text = error.what();
+      const std::string prefix = folder_.string() + "/";
+      if (const auto at = text.find(prefix); at != std::string::npos) text.erase(at, prefix.size());
+      return text;
+    }
+    return "accepted";
+  }
+
+  std::ptrdiff_t Entries() const { return std::distance(fs::directory_iterator(folder_), {}); }
+
+  fs::path folder_;
+};
+
+TEST_F(FileTest, OnlyRegularFilesAreRead) {
+  const auto read = [&](const fs::path& path) { return Refusal([&] { ReadFile(path.string()); }); };
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  fs::create_symlink(folder_ / "pipe", folder_ / "link");
+  EXPECT_EQ(read(folder_ / "none"), "none: cannot be read: No such file or directory");
+  EXPECT_EQ(read(folder_), folder_.string() + ": cannot be read: Is a directory");
+  EXPECT_EQ(read(folder_ / "pipe"), "pipe: cannot be read: a FIFO, not a file");
+  EXPECT_EQ(read(folder_ / "link"), "link: cannot be read: a FIFO, not a file");
+  EXPECT_EQ(read("/dev/zero"), "/dev/zero: cannot be read: a device, not a file");
+  EXPECT_EQ(read(""), ": cannot be read: No such file or directory");
+}
+
+TEST_F(FileTest, ContentComesWholeAndWithinItsBound) {
+  const std::string content(200'000, 'x');
+  WriteFile(folder_ / "x", content);
+  EXPECT_EQ(ReadFile((folder_ / "x").string(), content.size()), content);
+  EXPECT_EQ(Refusal([&] { ReadFile((folder_ / "x").string(), content.size() - 1); }),
+            "x: is too long; allowed: at most 199999 bytes");
+  fs::create_symlink(folder_ / "x", folder_ / "link");
+  EXPECT_EQ(ReadFile((folder_ / "link").string()), content);
+}
+
+TEST_F(FileTest, AFileIsReplacedWholeOrNotAtAll) {
+  WriteFile(folder_ / "x", "old");
+  {
+    AtomicFile file(folder_ / "x");
+    file.Write("new, but never finished");
+  }
+  EXPECT_EQ(Content(folder_ / "x"), "old");
+  EXPECT_EQ(Entries(), 1);
+  WriteFile(folder_ / "x", "new");
+  EXPECT_EQ(Content(folder_ / "x"), "new");
+  EXPECT_EQ(Entries(), 1);
+}
+
+TEST_F(FileTest, ALinkIsReplacedAndItsTargetStays) {
+  WriteFile(folder_ / "victim", "mine");
+  fs::create_symlink(folder_ / "victim", folder_ / "x");
+  WriteFile(folder_ / "x", "new");
+  EXPECT_EQ(Content(folder_ / "victim"), "mine");
+  EXPECT_EQ(Content(folder_ / "x"), "new");
+  EXPECT_FALSE(fs::is_symlink(folder_ / "x"));
+}
+
+TEST_F(FileTest, PlacesThatCannotBeWrittenAreNamed) {
+  const auto write = [&](const fs::path& path) { return Refusal([&] { WriteFile(path, "x"); }); };
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  fs::create_directory(folder_ / "sub");
+  EXPECT_EQ(write(folder_ / "pipe"), "pipe: cannot be written: a FIFO, not a file");
+  EXPECT_EQ(write(folder_ / "sub"), "sub: cannot be written: Is a directory");
+  EXPECT_EQ(write(folder_ / "none" / "x"), "none/x: cannot be written: No such file or directory");
+  EXPECT_EQ(write("/dev/null"), "/dev/null: cannot be written: a device, not a file");
+  WriteFile(folder_ / "file", "x");
+  EXPECT_EQ(Refusal([&] { MakeFolder(folder_ / "file" / "below"); }),
+            "file/below: cannot be made: Not a directory");
+}
+
+TEST_F(FileTest, ADiskThatIsFullLeavesTheOldFile) {
+  WriteFile(folder_ / "x", "old");
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before = {};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit small = before;
+  small.rlim_cur = 1000;
+  setrlimit(RLIMIT_FSIZE, &small);
+  const std::string refusal = Refusal([&] { WriteFile(folder_ / "x", std::string(100'000, 'x')); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, SIG_DFL);
+  EXPECT_EQ(refusal, "x: cannot be written: File too large");
+  EXPECT_EQ(Content(folder_ / "x"), "old");
+  EXPECT_EQ(Entries(), 1);
+}
+
+}  // namespace
+}  // namespace ed3r

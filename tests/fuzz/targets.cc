@@ -1,0 +1,128 @@
+#include "tests/fuzz/targets.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "engine/core/check.h"
+#include "engine/core/sha256.h"
+#include "engine/perception/vision/model_file.h"
+#include "engine/perception/vision/onnx_gate.h"
+#include "engine/sweep/sweep_file.h"
+#include "engine/world/picture_file.h"
+#include "engine/world/stem_map.h"
+#include "engine/world/terrain.h"
+#include "engine/world/world_file.h"
+#include "studies/detection/npy.h"
+#include "studies/fit/flight_log.h"
+#include "studies/fit/log_format.h"
+
+namespace ed3r {
+namespace {
+
+class PrivateFolder {
+ public:
+  PrivateFolder() : path_((std::filesystem::temp_directory_path() / "ed3r_fuzz_XXXXXX").string()) {
+    if (mkdtemp(path_.data()) == nullptr) std::abort();
+  }
+  ~PrivateFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+// A file of this process with these bytes, for readers that take a path.
+class InputFile {
+ public:
+  InputFile(std::string_view bytes, const std::string& name) {
+    static const PrivateFolder folder;
+    path_ = folder.path() + "/" + name;
+    const int file = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    if (file < 0 || ::write(file, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
+      std::abort();
+    ::close(file);
+  }
+  ~InputFile() { ::unlink(path_.c_str()); }
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+template <class Read>
+void Refusable(Read read) {
+  try {
+    read();
+  } catch (const UserError&) {
+  }
+}
+
+}  // namespace
+
+void FuzzSweep(std::string_view bytes) {
+  const InputFile file(bytes, "x.yaml");
+  Refusable([&] { LoadSweep(file.path()).CanonicalText(); });
+}
+
+void FuzzWorld(std::string_view bytes) {
+  const InputFile file(bytes, "w.yaml");
+  Refusable([&] { ReadWorldFile(file.path()); });
+}
+
+// As a text grid and as a GeoTIFF: the reader looks at the content.
+void FuzzGrid(std::string_view bytes) {
+  const InputFile file(bytes, "g.asc");
+  GridTerrainSpec spec;
+  spec.file = file.path();
+  spec.extent_m = {100.0, 80.0};
+  Refusable([&] { ReadElevationGrid(spec, {100.0, 80.0, 500.0}, 10.0); });
+}
+
+void FuzzStemMap(std::string_view bytes) {
+  const InputFile file(bytes, "stems.csv");
+  Refusable([&] { ReadStemMap(file.path()); });
+}
+
+void FuzzLog(std::string_view bytes) {
+  const InputFile file(bytes, "log.csv");
+  Refusable([&] { ReadFlightLog({file.path()}, LoadLogFormat("ardupilot")); });
+}
+
+void FuzzLogFormat(std::string_view bytes) {
+  Refusable([&] { ParseLogFormat("format.yaml", std::string(bytes)); });
+}
+
+void FuzzNpy(std::string_view bytes) {
+  Refusable([&] { ParseNpy(bytes, "frames.npy"); });
+}
+
+void FuzzPicture(std::string_view bytes) {
+  Refusable([&] { ReadPictureSides(bytes, "x.png"); });
+}
+
+void FuzzOnnx(std::string_view bytes) {
+  Refusable([&] { CheckOnnx(bytes, "x.onnx"); });
+}
+
+// The bytes are the payload: what whoever seals a file himself may put into it.
+void FuzzModel(std::string_view bytes) {
+  std::string sealed = "ED3RCNN\n";
+  for (int i = 0; i < 4; ++i) sealed += static_cast<char>(i == 0);
+  for (int i = 0; i < 8; ++i) sealed += static_cast<char>(bytes.size() >> (8 * i));
+  sealed += bytes;
+  Sha256 hash;
+  hash.Update(sealed);
+  sealed += hash.Hex();
+  Refusable([&] { ParseDetectorModel(sealed, "x.ed3rnet"); });
+}
+
+}  // namespace ed3r

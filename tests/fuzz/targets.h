@@ -1,0 +1,24 @@
+// What is fuzzed: one function for each kind of file that somebody else may have written. Whatever the bytes, a reader
+// returns or throws UserError; anything else ends the process and is a finding.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace ed3r {
+
+using FuzzFunction = void (*)(std::string_view bytes);
+
+void FuzzSweep(std::string_view bytes);
+void FuzzWorld(std::string_view bytes);
+void FuzzGrid(std::string_view bytes);
+void FuzzStemMap(std::string_view bytes);
+void FuzzLog(std::string_view bytes);
+void FuzzLogFormat(std::string_view bytes);
+void FuzzNpy(std::string_view bytes);
+void FuzzPicture(std::string_view bytes);
+void FuzzOnnx(std::string_view bytes);
+void FuzzModel(std::string_view bytes);
+
+}  // namespace ed3r
