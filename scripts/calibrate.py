@@ -2,10 +2,9 @@
 """Finds the worlds that what the paper says of its random walk does not rule out (history matching): calibrate.py [STEP]...
 
   waves     flies points of the space (scripts/calibration/space.py), each by RBS and a random warm-up alone; emulators say
-            where to fly next; three waves, each with seeds of its own
-  judge     flies what is left with fresh seeds and more missions
-  freeze    keeps the worlds that are left: sweeps/calibration/, sweeps/worlds/rbs/, results/calibration/
-Without a STEP: all of them. Each continues where it stopped; the same code gives the same record.
+            where to fly next; what comes nearest flies again with fresh seeds and more missions, and is judged by that
+  freeze    keeps the worlds that are left: sweeps/calibration/, sweeps/worlds/, sweeps/matched.yaml, results/calibration/
+Without a STEP: both. Each continues where it stopped; the same code gives the same record.
 
 The evidence (scripts/calibration/evidence.py) is about RBS and the warm-up alone: all that is said of ED3R, its ablations
 and ECD2R remains a prediction. The defaults in engine/config/perception.h are those of sweeps/calibration/frozen.yaml; a
@@ -21,11 +20,13 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from calibration import flights, record, waves  # noqa: E402
 
 FOLDER = flights.ROOT / "sweeps/calibration"
-# points, missions each, warm-up missions each
-WAVES = ((140, 112, 8), (100, 168, 8), (60, 336, 12))
-JUDGED = (28, 840, 16)
+# What flies: points, missions each, warm-up missions each, and whether they are new ones (far around the best so far, or close)
+# or the nearest so far once more.
+# Every wave has seeds of its own; the last one judges, on more missions.
+WAVES = ((140, 112, 8, "wide"), (100, 168, 8, "wide"), (60, 336, 12, "wide"), (28, 840, 16, "again"), (40, 336, 12, "close"),
+         (26, 1120, 16, "again"))
 SEED = 20261128
-STEPS = ("waves", "judge", "freeze")
+STEPS = ("waves", "freeze")
 
 
 class Search:
@@ -50,24 +51,30 @@ class Search:
                   f"{row['wer_pct']:.1f}, P85 {row['p85_energy_kj']:.0f} kJ", flush=True)
 
     def nearest(self, count):
-        return sorted(record.flown(self.rows), key=lambda row: row["implausibility"])[:count]
+        """Rows of the points that came nearest, each point once: as its most missions have it."""
+        surest = {}
+        for row in record.flown(self.rows):
+            key = tuple(record.point_of(row).values())
+            if key not in surest or row["missions"] >= surest[key]["missions"]:
+                surest[key] = row
+        return sorted(surest.values(), key=lambda row: row["implausibility"])[:count]
 
     def waves(self):
-        for number, (count, missions, warmups) in enumerate(WAVES, 1):
-            if number > self.done():
-                self.fly(number, waves.next_points(self.rows, count, SEED + number), missions, warmups)
-
-    def judge(self):
-        if self.done() <= len(WAVES):
-            count, missions, warmups = JUDGED
-            self.fly(len(WAVES) + 1, [record.point_of(row) for row in self.nearest(count)], missions, warmups)
+        for number, (count, missions, warmups, kind) in enumerate(WAVES, 1):
+            if number <= self.done():
+                continue
+            if kind == "again":
+                points = [record.point_of(row) for row in self.nearest(count)]
+            else:
+                points = waves.next_points(self.rows, count, SEED + number, kind)
+            self.fly(number, points, missions, warmups)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--again", metavar="DIR", type=pathlib.Path,
                         help="search from nothing in DIR, which holds record.csv then; freezes nothing")
-    parser.add_argument("steps", nargs="*", metavar="STEP", help="waves, judge or freeze; default: all")
+    parser.add_argument("steps", nargs="*", metavar="STEP", help="waves or freeze; default: both")
     options = parser.parse_args()
     steps = options.steps or STEPS
     if unknown := [step for step in steps if step not in STEPS]:
@@ -75,11 +82,9 @@ def main():
     search = Search(options.again or FOLDER, (options.again or flights.ROOT / "results/runs") / "calibration")
     if "waves" in steps:
         search.waves()
-    if "judge" in steps:
-        search.judge()
     if "freeze" in steps and not options.again:
         from calibration import freeze
-        freeze.freeze(search.rows, FOLDER, len(WAVES) + 1)
+        freeze.freeze(search.rows, FOLDER, len(WAVES))
     return 0
 
 

@@ -19,13 +19,18 @@ def spread_out(units, count, generator):
     return units[chosen]
 
 
-def proposals(rows, generator):
+# How near to the best points the next are looked for, and by what the best are told: in all quantities but one, or in all.
+REACH = {"wide": ((0.05, 0.1, 0.2), "second_implausibility"), "close": ((0.03, 0.06, 0.12), "implausibility")}
+
+
+def proposals(rows, reach, generator):
     """Rows of the unit cube: some from all of it, more around the points that came nearest so far."""
+    spreads, order = REACH[reach]
     everywhere = generator.random((20000, len(SPACE)))
-    best = sorted(rows, key=lambda row: row["second_implausibility"])[:40]
+    best = sorted(rows, key=lambda row: row[order])[:40]
     centres = units_of([record.point_of(row) for row in best])
     around = centres[generator.integers(len(centres), size=60000)]
-    around = around + generator.normal(size=around.shape) * generator.choice([0.05, 0.1, 0.2], size=(len(around), 1))
+    around = around + generator.normal(size=around.shape) * generator.choice(spreads, size=(len(around), 1))
     around = np.abs(around)
     around = np.where(around >= 1.0, 1.999 - around, around)  # reflected at the walls
     flip = generator.random(len(around)) < 0.2
@@ -34,14 +39,14 @@ def proposals(rows, generator):
     return np.clip(np.vstack([everywhere, around]), 0.0, 0.999)
 
 
-def next_points(rows, count, seed, say=print):
+def next_points(rows, count, seed, reach, say=print):
     """The first wave fills the space; later ones the part that the emulators do not rule out."""
     if not rows:
         return space_filling(count, seed)
     generator = np.random.default_rng(seed)
     known = record.flown(rows)
     emulator = Emulator([record.point_of(row) for row in known], [record.measures_of(row) for row in known])
-    units = proposals(known, generator)
+    units = proposals(known, reach, generator)
     ranked = np.sort(emulator.implausibility(units), axis=1)
     second = ranked[:, -2]
     open_ = units[second < CUT]
