@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -93,6 +95,22 @@ struct DatasetCloser {
 };
 using DatasetPtr = std::unique_ptr<GDALDataset, DatasetCloser>;
 
+bool IsGridNumber(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size() && !std::isinf(value);
+}
+
+bool IsHeaderName(std::string_view word) {
+  constexpr std::array<std::string_view, 10> kNames = {"ncols",     "nrows",       "xllcorner", "yllcorner",
+                                                       "xllcenter", "yllcenter",   "cellsize",  "dx",
+                                                       "dy",        "nodata_value"};
+  std::string lower(word);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::find(kNames.begin(), kNames.end(), lower) != kNames.end();
+}
+
 constexpr double kMaxWindowCells = 6e7;  // half a gigabyte
 
 // A rectangle of cells, row 0 in the south, that covers what the area needs.
@@ -114,6 +132,7 @@ class ElevationGrid {
     if (!dataset_)
       Fail(fmt::format("not readable as an ESRI ASCII grid or a GeoTIFF ({})", QuietGdal::LastError()));
     CheckKind();
+    if (in_order_) CheckWords(file);
   }
 
   // The terrain's node (x, y) lies at offset + (x, y) * extent / size of the grid.
@@ -165,6 +184,21 @@ class ElevationGrid {
       Fail(fmt::format(
           "{} x {} cells in blocks of {} x {}; allowed: at least 2 x 2, blocks of up to {:g} cells", columns_,
           rows_, block_columns, block_rows, kMaxWindowCells));
+  }
+
+  // GDAL takes a word among the heights of a text grid for 0.
+  void CheckWords(const std::filesystem::path& file) const {
+    const std::string text = ReadFile(file.string(), kMaxModelBytes);
+    constexpr std::string_view kSpace = " \t\r\n";
+    for (std::size_t begin = text.find_first_not_of(kSpace); begin != std::string::npos;) {
+      const std::size_t end = std::min(text.find_first_of(kSpace, begin), text.size());
+      const std::string_view word = std::string_view(text).substr(begin, end - begin);
+      if (!IsGridNumber(word) && !IsHeaderName(word))
+        Fail(fmt::format(
+            "line {}: '{}' is no number",
+            1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(begin), '\n'), word));
+      begin = text.find_first_not_of(kSpace, end);
+    }
   }
 
   // Between cells that are wider apart than the area nothing is known.
