@@ -158,14 +158,18 @@ void ByteReader::End() const {
   if (!bytes_.empty()) Refuse("is damaged: it holds more than it should");
 }
 
-void WriteSealedFile(const std::string& path, const SealedFormat& format, std::string_view payload) {
+std::string Sealed(const SealedFormat& format, std::string_view payload) {
   ED3R_CHECK(format.magic.size() == kMagicBytes, std::string(format.magic));
   std::string bytes(format.magic);
   Append(bytes, format.version);
   Append(bytes, static_cast<std::uint64_t>(payload.size()));
   bytes += payload;
   bytes += Digest(bytes);
+  return bytes;
+}
 
+void WriteSealedFile(const std::string& path, const SealedFormat& format, std::string_view payload) {
+  const std::string bytes = Sealed(format, payload);
   std::string temporary;
   const int file = OpenTemporary(path, temporary);
   int error = WriteAndSync(file, bytes);
