@@ -1,17 +1,16 @@
 # Run at every build: writes OUTPUT only when something changed. A result is a function of (sweep, seed, code), so the
-# code's identity is a hash of the sources that results depend on; the commit is told beside it.
-file(GLOB_RECURSE sources RELATIVE "${SOURCE_DIR}"
-  "${SOURCE_DIR}/kernels/*.cc" "${SOURCE_DIR}/kernels/*.h" "${SOURCE_DIR}/engine/*.cc" "${SOURCE_DIR}/engine/*.h"
-  "${SOURCE_DIR}/engine/*.ed3rnet")
-list(FILTER sources EXCLUDE REGEX "^(engine/app|kernels/bench|engine/store|engine/schedule)/")
-list(SORT sources)
-set(all "")
-foreach(source ${sources})
-  file(SHA256 "${SOURCE_DIR}/${source}" hash)
-  string(APPEND all "${source} ${hash}\n")
-endforeach()
-string(SHA256 source_hash "${all}")
+# code's identity is a hash of the sources that results depend on (code_identity.py); the commit is told beside it.
+find_program(PYTHON NAMES python3 REQUIRED)
+execute_process(COMMAND "${PYTHON}" "${CMAKE_CURRENT_LIST_DIR}/code_identity.py" "${SOURCE_DIR}"
+  OUTPUT_VARIABLE identities OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+string(SHA256 source_hash "${identities}")
 string(SUBSTRING "${source_hash}" 0 16 source_hash)
+foreach(subsystem flight pixels training precision)
+  if(NOT identities MATCHES "(^|\n)${subsystem} ([0-9a-f]+)")
+    message(FATAL_ERROR "code_identity.py says nothing about ${subsystem}")
+  endif()
+  set(${subsystem} "${CMAKE_MATCH_2}")
+endforeach()
 
 set(commit "unknown")
 set(dirty false)
@@ -33,7 +32,9 @@ file(CONFIGURE OUTPUT "${OUTPUT}" CONTENT [[#include "engine/core/version.h"
 
 namespace ed3r {
 
-CodeVersion ThisCode() { return {"@source_hash@", "@commit@", @dirty@, "@COMPILER@", "@FLAGS@"}; }
+CodeVersion ThisCode() {
+  return {"@source_hash@", "@flight@", "@pixels@", "@training@", "@precision@", "@commit@", @dirty@, "@COMPILER@", "@FLAGS@"};
+}
 
 }  // namespace ed3r
 ]] @ONLY)

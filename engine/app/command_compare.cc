@@ -76,6 +76,7 @@ int Compare(const Options& options) {
       throw UserError(
           fmt::format("{}: two of the runs are in folders called '{}'; their names must differ", dir, label));
     labels.push_back(label);
+    ResultReader(dir).CheckWhole();
     const RunResults run = LoadRun(dir);
     seeds.insert(ResultReader(dir).Layout().seed);
     if (!VariantsOf(run.arms).empty())

@@ -78,6 +78,7 @@ struct ReportOptions {
 };
 
 int MakeReportOf(const ReportOptions& options) {
+  ResultReader(options.dir).CheckWhole();  // before anything is written
   const RunResults results = LoadRun(options.dir);
   const Report report = MakeReport(results);
   FolderOptions folder{.dir = options.dir,

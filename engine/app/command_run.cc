@@ -22,12 +22,14 @@ struct Options {
   std::string cache = "results/cache";
   int threads = 0;
   std::string shard = "1/1";
-  bool quiet = false;
+  bool quiet = false, repair = false, accept_mixed = false;
 };
 
 // One line on what this session did, with the real-time factor per core.
 void Tell(const SweepSummary& summary, const std::string& dir) {
   const RunSummary& flown = summary.flown;
+  for (const DamagedMission& damage : summary.repaired)
+    fmt::print("repaired: {}: {}\n", damage.name, damage.what);
   fmt::print("{}: {} stored", dir, Counted(summary.stored_before + flown.stored, "mission"));
   if (summary.stored_before > 0) fmt::print(" ({} before)", summary.stored_before);
   if (flown.failed > 0) fmt::print(", {} failed", flown.failed);
@@ -60,6 +62,8 @@ int Run(const Options& options) {
   sweep.schedule.threads = options.threads;
   sweep.schedule.stop = &InterruptFlag();
   sweep.schedule.quiet = options.quiet;
+  sweep.repair = options.repair;
+  sweep.accept_mixed = options.accept_mixed;
   sweep.half_width = HalfWidth;
   sweep.notes = DescribeMachine();
   sweep.notes.merge(NotesOf(options.sweep));
@@ -93,6 +97,10 @@ Command AddRun(CLI::App& program) {
   parser->add_option("--shard", options->shard,
                      "I/N: fly one of N parts, e.g. 1/4, counted from 1 to N or from 0 to N-1 (0/N is N/N); "
                      "'ed3r merge' joins them");
+  parser->add_flag("--repair", options->repair,
+                   "Delete stored missions that are damaged ('ed3r verify' names them) and fly them again");
+  parser->add_flag("--accept-mixed", options->accept_mixed,
+                   "Continue a run that other code has begun; its report says so");
   parser->add_flag("--quiet", options->quiet, "Neither progress nor table");
   return {parser, [options] { return Run(*options); }};
 }

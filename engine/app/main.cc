@@ -26,9 +26,10 @@ namespace {
 
 std::vector<Command> AddCommands(CLI::App& program) {
   return {AddRun(program),     AddPlan(program),   AddStatus(program),  AddReport(program),
-          AddCompare(program), AddDigest(program), AddMerge(program),   AddReplay(program),
-          AddExplain(program), AddParams(program), AddPhysics(program), AddFit(program),
-          AddWorld(program),   AddFrames(program), AddDetect(program),  AddDoctor(program)};
+          AddCompare(program), AddDigest(program), AddMerge(program),   AddVerify(program),
+          AddDiff(program),    AddReplay(program), AddExplain(program), AddParams(program),
+          AddPhysics(program), AddFit(program),    AddWorld(program),   AddFrames(program),
+          AddDetect(program),  AddDoctor(program)};
 }
 
 // What is wrong with a command line that the parser refuses. A word left over that no command took should have been a

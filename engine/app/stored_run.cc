@@ -4,13 +4,14 @@
 
 #include <charconv>
 #include <filesystem>
-#include <sstream>
 
 #include "engine/agents/strategy.h"
 #include "engine/app/words.h"
+#include "engine/config/parameters.h"
 #include "engine/core/check.h"
 #include "engine/core/utf8.h"
-#include "engine/core/version.h"
+#include "engine/sweep/plan_text.h"
+#include "engine/sweep/setting.h"
 
 namespace ed3r {
 namespace {
@@ -19,31 +20,29 @@ std::string JoinedLines(const std::vector<std::string>& lines) {
   return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
-std::vector<std::string> Lines(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
+SweepPlan StoredPlan(const ResultReader& reader, const RestoredFiles& files) {
+  const Recipe& recipe = reader.StoredRecipe();
+  SweepPlan plan = PlanOf(ReadPlanText(recipe.plan_text), reader.dir());
+  if (const auto code = CodeDifference(recipe.code, CodeOf(plan)))
+    throw UserError(fmt::format("{}: {}; build that version to fly its missions again", reader.dir(), *code));
+  if (plan.CanonicalText() != recipe.plan_text)
+    throw UserError(fmt::format("{}: its plan is of another version of ed3r", reader.dir()));
+  for (Stage& stage : plan.stages)
+    for (Arm& arm : stage.arms)
+      for (const auto& [key, called] : arm.files) {
+        if (called == kBuiltInDetector) continue;
+        const std::string problem = SetParameter(arm.config, key, files.PathOf(called));
+        ED3R_CHECK(problem.empty(), problem);
+      }
+  return plan;
 }
 
-SweepPlan ReloadPlan(ResultReader& reader) {
-  const std::vector<Session> sessions = reader.Sessions();
-  if (sessions.empty() || !sessions.back().notes.contains("sweep file"))
-    throw UserError(fmt::format("{}: no session tells which sweep file it was flown from", reader.dir()));
-  const std::map<std::string, std::string>& notes = sessions.back().notes;
-  SweepArguments arguments;
-  arguments.file = notes.at("sweep file");
-  arguments.seed = notes.at("sweep --seed");
-  arguments.missions = Lines(notes.at("sweep --missions"));
-  arguments.set = Lines(notes.at("sweep --set"));
-  SweepPlan plan = arguments.Load();
-  if (plan.CanonicalText() != reader.StoredRecipe().plan_text)
-    throw UserError(fmt::format("{}: {} has changed since it was flown", reader.dir(), arguments.file));
-  if (ThisCode().source_hash != reader.StoredRecipe().code_version)
-    throw UserError(
-        fmt::format("{}: flown by code {}, this is code {}; build that version to fly its missions again",
-                    reader.dir(), reader.StoredRecipe().code_version, ThisCode().source_hash));
-  return plan;
+void CheckSameInputs(const ResultReader& reader, const std::map<std::string, std::string>& here) {
+  for (const auto& [name, fingerprint] : reader.StoredRecipe().inputs) {
+    const auto found = here.find(name);
+    if (found == here.end() || found->second != fingerprint)
+      throw UserError(fmt::format("{}: {} has changed since it was flown", reader.dir(), name));
+  }
 }
 
 // With their stages in front where the word has one, too.
@@ -79,7 +78,13 @@ std::map<std::string, std::string> NotesOf(const SweepArguments& arguments) {
 }
 
 StoredRun::StoredRun(const std::string& dir, const std::string& cache_dir)
-    : reader_(dir), cache_dir_(cache_dir), plan_(ReloadPlan(reader_)), inputs_(plan_) {}
+    : reader_(dir),
+      cache_dir_(cache_dir),
+      files_(reader_),
+      plan_(StoredPlan(reader_, files_)),
+      inputs_(plan_) {
+  CheckSameInputs(reader_, inputs_.Fingerprints(plan_));
+}
 
 RunId StoredRun::Find(const std::string& mission) const {
   const auto slash = mission.rfind('/');
@@ -105,8 +110,11 @@ RunId StoredRun::Find(const std::string& mission) const {
 
 MissionTask StoredRun::Task(const RunId& id) {
   const Arm& arm = plan_.stages[static_cast<std::size_t>(id.stage)].arms[static_cast<std::size_t>(id.arm)];
-  if (networks_ == nullptr && !FindStrategy(arm.config.mission.strategy).networks.empty())
-    networks_ = TrainNetworks(plan_, {reader_.dir(), cache_dir_, ThreadsFor(0), nullptr});
+  if (networks_ == nullptr && !FindStrategy(arm.config.mission.strategy).networks.empty()) {
+    const FlownNetworks flown = reader_.Networks();
+    networks_ = flown.uses.empty() ? TrainNetworks(plan_, {reader_.dir(), cache_dir_, ThreadsFor(0), nullptr})
+                                   : NetworkShelf::From(flown, reader_.dir());
+  }
   return TaskOf(plan_, inputs_, networks_.get(), id);
 }
 

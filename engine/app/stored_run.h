@@ -8,22 +8,24 @@
 #include "engine/app/sweep_arguments.h"
 #include "engine/schedule/sweep_runner.h"
 #include "engine/store/reader.h"
+#include "engine/store/restored_files.h"
 
 namespace ed3r {
 
-// Notes from which StoredRun finds the sweep again; stored with each session.
+// How the sweep was asked for, for people who read a report; stored with each session.
 std::map<std::string, std::string> NotesOf(const SweepArguments& arguments);
 
 class StoredRun {
  public:
-  // Loads the sweep that the run was made from and checks that it is still the same plan and code. Throws UserError
-  // that says what has changed.
+  // Builds the plan and its worlds from what the run directory keeps, and nothing else. Throws UserError where this is
+  // other code than that which flew.
   StoredRun(const std::string& dir, const std::string& cache_dir);
 
   // "ARM/NUMBER" or "STAGE/ARM/NUMBER", numbers from 0. Throws UserError that names the nearest arm or lists them.
   RunId Find(const std::string& mission) const;
 
-  // Trains or finds the networks where the mission's strategy asks any.
+  // With the networks that flew, where the mission's strategy asks any; a run of format 1 keeps none, so that they are
+  // trained or found again.
   MissionTask Task(const RunId& id);
 
   ResultReader& Reader() { return reader_; }
@@ -33,6 +35,7 @@ class StoredRun {
  private:
   ResultReader reader_;
   std::string cache_dir_;
+  RestoredFiles files_;
   SweepPlan plan_;
   Inputs inputs_;
   std::unique_ptr<NetworkShelf> networks_;

@@ -94,14 +94,18 @@ void ByteReader::End() const {
   if (!bytes_.empty()) Refuse("is damaged: it holds more than it should");
 }
 
-void WriteSealedFile(const std::string& path, const SealedFormat& format, std::string_view payload) {
+std::string Sealed(const SealedFormat& format, std::string_view payload) {
   ED3R_CHECK(format.magic.size() == kMagicBytes, std::string(format.magic));
   std::string bytes(format.magic);
   Append(bytes, format.version);
   Append(bytes, static_cast<std::uint64_t>(payload.size()));
   bytes += payload;
   bytes += Digest(bytes);
-  WriteFile(path, bytes);
+  return bytes;
+}
+
+void WriteSealedFile(const std::string& path, const SealedFormat& format, std::string_view payload) {
+  WriteFile(path, Sealed(format, payload));
 }
 
 std::string OpenSealed(std::string_view all, const std::string& name, const SealedFormat& format) {

@@ -61,6 +61,9 @@ class ByteReader {
   const SealedFormat& format_;
 };
 
+// The whole of such a file: OpenSealed gives the payload back.
+std::string Sealed(const SealedFormat& format, std::string_view payload);
+
 // Throws UserError where the disk refuses.
 void WriteSealedFile(const std::string& path, const SealedFormat& format, std::string_view payload);
 

@@ -33,6 +33,7 @@ struct ModelData {
   Scaling scaling;
   TrainingReport report;
   Provenance provenance;
+  std::string key = {};  // TrainingKey of the job that made it; "" for one that no job made
 };
 
 struct BestAction {

@@ -7,12 +7,13 @@
 #include <cmath>
 
 #include "engine/core/sealed_file.h"
+#include "engine/core/sha256.h"
 #include "engine/rfnn/curve_bytes.h"
 
 namespace ed3r {
 namespace {
 
-constexpr SealedFormat kFormat = {"ED3RRFNN", 1, "model file"};
+constexpr SealedFormat kFormat = {"ED3RRFNN", 2, "model file"};
 
 // Everything that must agree before weights mean anything, as one text.
 std::string DesignText(const NetworkDesign& design) {
@@ -90,11 +91,10 @@ void CheckUsable(const ModelData& data, const NetworkDesign& design, const ByteR
   if (!usable) in.Refuse("holds a scale that cannot be used");
 }
 
-}  // namespace
-
-void WriteModel(const std::string& path, const Model& model) {
+std::string Payload(const Model& model) {
   ByteWriter out;
   out.Text(DesignText(model.design()));
+  out.Text(model.data().key);
   out.U64(model.data().provenance.size());
   for (const auto& [key, value] : model.data().provenance) {
     out.Text(key);
@@ -103,16 +103,21 @@ void WriteModel(const std::string& path, const Model& model) {
   PutScaling(model.data().scaling, out);
   PutReport(model.data().report, out);
   out.F32s(model.data().weights);
-  WriteSealedFile(path, kFormat, out.bytes());
+  return out.bytes();
 }
 
-Model ReadModel(const std::string& path, const NetworkDesign& design) {
-  const std::string payload = ReadSealedFile(path, kFormat);
+Model ModelOf(std::string_view payload, const std::string& path, const NetworkDesign& design,
+              const std::optional<std::string>& key) {
   ByteReader in(payload, path, kFormat);
   const std::string found = in.Text();
   if (const std::string wanted = DesignText(design); found != wanted)
     in.Refuse(fmt::format("holds another network: {}; wanted: {}", found, wanted));
   ModelData data;
+  data.key = in.Text();
+  if (key && data.key != *key)
+    in.Refuse(
+        fmt::format("holds the network of another training ({:.16}; wanted: {:.16}); delete it to train anew",
+                    data.key, *key));
   for (std::uint64_t left = in.U64(); left > 0; --left) {
     std::string key = in.Text();
     data.provenance.emplace_back(std::move(key), in.Text());
@@ -123,6 +128,32 @@ Model ReadModel(const std::string& path, const NetworkDesign& design) {
   in.End();
   CheckUsable(data, design, in);
   return Model(design, std::move(data));
+}
+
+}  // namespace
+
+std::string ModelBytes(const Model& model) { return Sealed(kFormat, Payload(model)); }
+
+void WriteModel(const std::string& path, const Model& model) {
+  WriteSealedFile(path, kFormat, Payload(model));
+}
+
+Model ReadModel(const std::string& path, const NetworkDesign& design, const std::optional<std::string>& key) {
+  return ModelOf(ReadSealedFile(path, kFormat), path, design, key);
+}
+
+Model OpenModel(std::string_view bytes, const std::string& name, const NetworkDesign& design) {
+  return ModelOf(OpenSealed(bytes, name, kFormat), name, design, std::nullopt);
+}
+
+std::string NetworkHash(const Model& model) {
+  ByteWriter out;
+  out.Text(DesignText(model.design()));
+  PutScaling(model.data().scaling, out);
+  out.F32s(model.data().weights);
+  Sha256 sha;
+  sha.Update(out.bytes());
+  return sha.Hex();
 }
 
 }  // namespace ed3r

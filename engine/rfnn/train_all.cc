@@ -32,7 +32,8 @@ std::shared_ptr<const Model> TrainOne(const TrainJob& job, const std::string& pa
     std::optional<Model> model = Train(job, control);
     return model ? std::make_shared<const Model>(std::move(*model)) : nullptr;
   }
-  if (std::filesystem::exists(path)) return std::make_shared<const Model>(ReadModel(path, job.design));
+  if (std::filesystem::exists(path))
+    return std::make_shared<const Model>(ReadModel(path, job.design, TrainingKey(job)));
   control.checkpoint = path + ".checkpoint";
   std::optional<Model> model = Train(job, control);
   if (!model) return nullptr;

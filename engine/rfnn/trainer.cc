@@ -176,6 +176,7 @@ Model Training::Finish() {
   ModelData data;
   data.weights = best_weights_;
   data.scaling = scaling_;
+  data.key = TrainingKey(job_);
   data.provenance = ProvenanceOf(job_);
   data.provenance.insert(data.provenance.end(), job_.notes.begin(), job_.notes.end());
   TrainingReport& report = data.report;

@@ -10,6 +10,7 @@
 #include "engine/core/version.h"
 #include "engine/mission/mission.h"
 #include "engine/mission/scenario.h"
+#include "engine/schedule/input_files.h"
 #include "engine/store/store.h"
 
 namespace ed3r {
@@ -17,9 +18,12 @@ namespace {
 
 Recipe RecipeOf(const SweepPlan& plan, const Inputs& inputs,
                 const std::map<std::string, std::string>& notes) {
+  InputFiles files = ReadInputFiles(plan);
   return {.plan_text = plan.CanonicalText(),
-          .code_version = ThisCode().source_hash,
+          .code = CodeOf(plan),
           .inputs = inputs.Fingerprints(plan),
+          .places = std::move(files.places),
+          .files = std::move(files.files),
           .notes = notes};
 }
 
@@ -50,6 +54,18 @@ bool Complete(const SweepPlan& plan, const std::vector<RunId>& stored, const std
 
 }  // namespace
 
+CodeIdentities CodeOf(const SweepPlan& plan) {
+  const CodeVersion code = ThisCode();
+  CodeIdentities identities = {{"flight", {code.flight}}};
+  if (NeedsNetworks(plan)) identities["training"] = {code.training};
+  for (const Stage& stage : plan.stages) {
+    if (stage.precision) identities["precision"] = {code.precision};
+    for (const Arm& arm : stage.arms)
+      if (arm.config.perception.tier == PerceptionTier::kPixels) identities["pixels"] = {code.pixels};
+  }
+  return identities;
+}
+
 MissionTask TaskOf(const SweepPlan& plan, const Inputs& inputs, const NetworkShelf* networks,
                    const RunId& id) {
   const Arm& arm =
@@ -77,7 +93,9 @@ class Stages {
         inputs_(inputs),
         options_(options),
         layout_(LayoutOf(plan)),
-        store_(ResultStore::Open(options.dir, RecipeOf(plan, inputs, options.notes), layout_)) {
+        store_(ResultStore::Open(options.dir, RecipeOf(plan, inputs, options.notes), layout_,
+                                 options.accept_mixed ? OtherCode::kAccept : OtherCode::kRefuse)) {
+    LookForDamage();
     summary_.stored_before = static_cast<std::int64_t>(store_->Stored().size());
   }
 
@@ -94,6 +112,15 @@ class Stages {
   }
 
  private:
+  // Nothing is built on damaged missions, and a run that ends well leaves none behind.
+  void LookForDamage() {
+    const std::vector<DamagedMission> damage = store_->FindDamage();
+    if (damage.empty()) return;
+    if (!options_.repair) throw UserError(DamageText(options_.dir, damage.front()));
+    store_->Remove(damage);
+    summary_.repaired = damage;
+  }
+
   bool Ready(const Stage& stage, const std::vector<RunId>& stored) const {
     return std::all_of(stage.after.begin(), stage.after.end(), [&](const std::string& name) {
       return finished_.contains(name) || Complete(plan_, stored, name);
@@ -149,10 +176,12 @@ class Stages {
     networks_ =
         TrainNetworks(plan_, {options_.dir, options_.cache_dir, ThreadsFor(options_.schedule.threads),
                               options_.schedule.stop, options_.schedule.progress, options_.schedule.quiet});
-    if (networks_ == nullptr)
+    if (networks_ == nullptr) {
       summary_.flown.interrupted = true;
-    else
-      summary_.networks = networks_->All();
+      return;
+    }
+    store_->PutNetworks(networks_->Flown());
+    summary_.networks = networks_->All();
   }
 
   const SweepPlan& plan_;

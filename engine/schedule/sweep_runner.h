@@ -11,9 +11,13 @@
 #include "engine/schedule/scheduler.h"
 #include "engine/schedule/todo.h"
 #include "engine/schedule/training_stage.h"
+#include "engine/store/recipe.h"
 #include "engine/sweep/plan.h"
 
 namespace ed3r {
+
+// The code that decides this plan's results: of the subsystems that its arms use.
+CodeIdentities CodeOf(const SweepPlan& plan);
 
 // What a plan makes of a mission: the same for flying, replaying and explaining.
 // `networks` may be null for arms that ask none. Plan, inputs and networks must outlive the task.
@@ -30,6 +34,8 @@ struct SweepOptions {
   std::string cache_dir;  // networks of all sweeps
   Shard shard;
   ScheduleOptions schedule;
+  bool repair = false;                       // take damaged missions out and fly them again
+  bool accept_mixed = false;                 // continue what other code has begun
   HalfWidthFn half_width;                    // asked by stages with a precision
   std::map<std::string, std::string> notes;  // on machine and libraries, stored with the session
 };
@@ -37,11 +43,13 @@ struct SweepOptions {
 struct SweepSummary {
   RunSummary flown;                      // of this session
   std::int64_t stored_before = 0;        // missions that were there already
+  std::vector<DamagedMission> repaired;  // taken out to be flown again
   std::vector<ShelvedNetwork> networks;  // trained or found
   std::string waiting_stage;  // a stage that could not begin because a shard or a failed mission is missing
 };
 
-// Flies what is missing. The same call again continues where it stopped.
+// Flies what is missing. The same call again continues where it stopped. Everything that is stored is compared with its
+// checksums first: UserError that names the first damaged mission, unless it may be repaired.
 SweepSummary RunSweep(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options);
 
 }  // namespace ed3r

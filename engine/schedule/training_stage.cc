@@ -9,11 +9,16 @@
 #include "engine/core/progress.h"
 #include "engine/core/version.h"
 #include "engine/mission/samples.h"
+#include "engine/rfnn/model_file.h"
 #include "engine/rfnn/train_all.h"
 #include "engine/store/reader.h"
 
 namespace ed3r {
 namespace {
+
+// Names of the agents in the store.
+constexpr char kRcAgent[] = "rc";
+constexpr char kRobotAgent[] = "robot";
 
 bool RobotChooses(const Strategy& strategy) {
   return strategy.execution == ExecutionPolicy::kNetwork && strategy.allowed.Count() > 1;
@@ -78,6 +83,48 @@ int NetworkShelf::SeedIndex(const RunId& id, int places) const {
   const auto found = by_arm_.find({id.stage, id.arm});
   if (found == by_arm_.end()) return -1;
   return id.mission / places % static_cast<int>(found->second.size());
+}
+
+FlownNetworks NetworkShelf::Flown() const {
+  FlownNetworks flown;
+  std::map<const Model*, std::string> hashes;
+  for (const ShelvedNetwork& network : all_) {
+    const std::string& hash = hashes[network.model.get()] = NetworkHash(*network.model);
+    flown.files[hash] = {network.name, ModelBytes(*network.model)};
+  }
+  for (const auto& [arm, pairs] : by_arm_)
+    for (std::size_t seed = 0; seed < pairs.size(); ++seed)
+      for (const auto& [agent, model] : {std::pair{std::string(kRcAgent), pairs[seed].rc},
+                                         std::pair{std::string(kRobotAgent), pairs[seed].robot}})
+        if (model != nullptr)
+          flown.uses.push_back(
+              {arm.first, arm.second, static_cast<int>(seed), agent, hashes.at(model.get())});
+  return flown;
+}
+
+std::unique_ptr<NetworkShelf> NetworkShelf::From(const FlownNetworks& flown, const std::string& dir) {
+  auto shelf = std::make_unique<NetworkShelf>();
+  std::map<std::string, std::shared_ptr<const Model>> models;
+  for (const NetworkUse& use : flown.uses) {
+    const NetworkFile& file = flown.files.at(use.sha256);
+    const std::string name = fmt::format("{}: network '{}'", dir, file.name);
+    std::shared_ptr<const Model>& model = models[use.sha256];
+    if (!model) {
+      model = std::make_shared<const Model>(
+          OpenModel(file.model, name, use.agent == kRcAgent ? kRcNetwork : kRobotNetwork));
+      if (NetworkHash(*model) != use.sha256)
+        throw UserError(fmt::format("{}: is not the one that flew", name));
+      shelf->all_.push_back({file.name, "", model});
+    }
+    std::vector<Pair>& pairs = shelf->by_arm_[{use.stage, use.arm}];
+    // Seeds are counted from 0 without gaps, in order.
+    if (use.seed == static_cast<int>(pairs.size())) pairs.emplace_back();
+    if (use.seed < 0 || use.seed + 1 != static_cast<int>(pairs.size()) ||
+        (use.agent != kRcAgent && use.agent != kRobotAgent))
+      throw UserError(fmt::format("{}: has no place among the networks that flew", name));
+    (use.agent == kRcAgent ? pairs.back().rc : pairs.back().robot) = model;
+  }
+  return shelf;
 }
 
 bool NeedsNetworks(const SweepPlan& plan) {
@@ -148,7 +195,7 @@ std::size_t TrainingStage::AddJob(const NetworkDesign& design, const DataSet& da
       .data = &data,
       .config = arm.config.training,
       .seed = static_cast<std::uint64_t>(arm.config.training.seed + seed),
-      .code_version = ThisCode().source_hash,
+      .code_version = ThisCode().training,
       .notes = {{"warm-up", std::string(source)}, {"eta_min", fmt::format("{}", arm.config.agents.eta_min)}}};
   std::string name = fmt::format("{} from {}{}, eta_min {}, seed {}", design.name, source,
                                  arm.variant.empty() ? "" : fmt::format(" of {}", arm.variant),

@@ -15,6 +15,7 @@
 
 #include "engine/agents/context.h"
 #include "engine/rfnn/trainer.h"
+#include "engine/store/networks.h"
 #include "engine/sweep/plan.h"
 
 namespace ed3r {
@@ -36,6 +37,11 @@ class NetworkShelf {
   int SeedIndex(const RunId& id, int places) const;
 
   const std::vector<ShelvedNetwork>& All() const { return all_; }
+
+  // For the store, and back from it.
+  FlownNetworks Flown() const;
+  // Every network is compared with the hash under which it flew; UserError when one differs.
+  static std::unique_ptr<NetworkShelf> From(const FlownNetworks& flown, const std::string& dir);
 
  private:
   friend class TrainingStage;
@@ -62,7 +68,8 @@ bool NeedsNetworks(const SweepPlan& plan);
 // strategy. Throws UserError that says what is missing; part of the checks before anything is written.
 void CheckTraining(const SweepPlan& plan);
 
-// Trains, or finds, all networks. Null when stopped: the same call again continues.
+// Trains, or finds, all networks. Null when stopped: the same call again continues. NetworkShelf::From() takes them from
+// a run that has flown.
 std::unique_ptr<NetworkShelf> TrainNetworks(const SweepPlan& plan, const TrainingOptions& options);
 
 }  // namespace ed3r

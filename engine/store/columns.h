@@ -6,6 +6,10 @@
 // -0.0 comes back as 0.0. Everything else, infinities and denormals included, comes back bit for bit.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -68,6 +72,20 @@ std::string Placeholders(int keys) {
   return marks;
 }
 
+// The value that a column has in a file that was written before there was such a column: the field's initial value.
+template <class Record>
+std::vector<std::string> DefaultLiterals() {
+  std::vector<std::string> literals;
+  const Record record;
+  Record::Describe(record, [&](std::string_view, const auto& field) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, double>)
+      literals.push_back(std::isnan(field) ? "NULL" : fmt::format("{:#.17g}", field));
+    else
+      literals.push_back(fmt::format("{}", field));
+  });
+  return literals;
+}
+
 // Binds every column of the record, from parameter `next` on.
 template <class Record>
 void BindColumns(Statement& statement, int next, const Record& record) {
@@ -108,5 +126,58 @@ void AppendColumns(std::string& bytes, const Record& record) {
       AppendInt(bytes, field);
   });
 }
+
+// The columns of Record that a file has, in the file's order. Code that knows more of them reads the file all the same,
+// and its checksums are over these.
+template <class Record>
+class StoredColumns {
+ public:
+  // `names` as the file has them. `unknown` is the first that Record does not have, "" where it knows all.
+  explicit StoredColumns(const std::vector<std::string>& names) {
+    const std::vector<Column> known = ColumnsOf<Record>();
+    const std::vector<std::string> literals = DefaultLiterals<Record>();
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      const bool stored = std::find(names.begin(), names.end(), known[i].name) != names.end();
+      selection_ += (i == 0 ? "" : ", ") + (stored ? known[i].name : literals[i]);
+      complete_ = complete_ && stored;
+    }
+    for (const std::string& name : names) {
+      const auto at =
+          std::find_if(known.begin(), known.end(), [&](const Column& c) { return c.name == name; });
+      if (at == known.end()) {
+        if (unknown_.empty()) unknown_ = name;
+        continue;
+      }
+      order_.push_back(static_cast<std::size_t>(at - known.begin()));
+      names_ += (names_.empty() ? "" : ", ") + name;
+    }
+  }
+
+  const std::string& unknown() const { return unknown_; }
+  bool complete() const { return complete_; }
+  const std::string& names() const { return names_; }  // "k, command_dx_m, ..."
+  // What to select for ReadColumns: a column that the file lacks is its default.
+  const std::string& selection() const { return selection_; }
+
+  // As AppendColumns, of the stored columns alone and in their order.
+  void Append(std::string& bytes, const Record& record) const {
+    std::array<std::int64_t, kMostColumns> values;
+    std::size_t count = 0;
+    Record::Describe(record, [&](std::string_view, const auto& field) {
+      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, double>)
+        values.at(count++) = std::bit_cast<std::int64_t>(Canonical(field));
+      else
+        values.at(count++) = field;
+    });
+    for (const std::size_t i : order_) AppendInt(bytes, values[i]);
+  }
+
+ private:
+  static constexpr std::size_t kMostColumns = 256;
+
+  std::string unknown_, names_, selection_;
+  bool complete_ = true;
+  std::vector<std::size_t> order_;
+};
 
 }  // namespace ed3r

@@ -1,10 +1,28 @@
 #include "engine/store/digest.h"
 
+#include <fmt/format.h>
+
 #include "engine/core/sha256.h"
 #include "engine/store/columns.h"
 #include "engine/store/reader.h"
 
 namespace ed3r {
+namespace {
+
+std::string BytesOfFormat1(const ResultReader& reader, const StoredMission& mission) {
+  const RunLayout::Stage& stage = reader.Layout().stages[static_cast<std::size_t>(mission.id.stage)];
+  std::string bytes;
+  AppendText(bytes, stage.name);
+  AppendText(bytes, stage.arms[static_cast<std::size_t>(mission.id.arm)].name);
+  AppendInt(bytes, mission.id.mission);
+  reader.Tables().missions().Append(bytes, mission.record);
+  AppendInt(bytes, static_cast<std::int64_t>(mission.record.steps.size()));
+  for (const TimestepRecord& step : mission.record.steps) reader.Tables().timesteps().Append(bytes, step);
+  return bytes;
+}
+
+}  // namespace
+
 std::string CanonicalBytes(const MissionRecord& record) {
   std::string bytes;
   AppendColumns(bytes, record);
@@ -21,20 +39,15 @@ std::string DigestOf(const MissionRecord& record) {
 
 std::string DigestOf(ResultReader& reader) {
   std::string header;
-  AppendText(header, "ed3r results 1");
-  AppendText(header, ColumnNames<MissionRecord>());
-  AppendText(header, ColumnNames<TimestepRecord>());
   Sha256 sha;
+  AppendText(header, fmt::format("ed3r results {}", reader.Format()));
+  if (reader.Format() == 1) {
+    AppendText(header, reader.Tables().missions().names());
+    AppendText(header, reader.Tables().timesteps().names());
+  }
   sha.Update(header);
-  const RunLayout& layout = reader.Layout();
   reader.ForEachMission(Steps::kLoad, [&](const StoredMission& mission) {
-    const RunLayout::Stage& stage = layout.stages[mission.id.stage];
-    header.clear();
-    AppendText(header, stage.name);
-    AppendText(header, stage.arms[mission.id.arm].name);
-    AppendInt(header, mission.id.mission);
-    sha.Update(header);
-    sha.Update(CanonicalBytes(mission.record));
+    sha.Update(reader.Format() == 1 ? BytesOfFormat1(reader, mission) : mission.checksum);
   });
   return sha.Hex();
 }

@@ -18,9 +18,10 @@ std::string CanonicalBytes(const MissionRecord& record);
 // SHA-256 of CanonicalBytes in hexadecimal.
 std::string DigestOf(const MissionRecord& record);
 
-// SHA-256 of everything stored: the column names; then for each finished mission, by stage, arm and mission,
-// the names of stage and arm, its number, its columns, and its timesteps by k. Failures, sessions and timings
-// are not part of it. Texts carry their length.
+// SHA-256 of everything stored: the format's name; then each finished mission's checksum (checksums.h, hexadecimal), by
+// stage, arm and mission, each compared with what it is the checksum of. Failures, sessions and timings are not part of
+// it. Files of format 1 have no checksums: there it is over the column names and, for each mission, the names of stage
+// and arm, its number, its columns and its timesteps by k, so that they keep the digest with which they were published.
 std::string DigestOf(ResultReader& reader);
 
 }  // namespace ed3r

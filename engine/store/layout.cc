@@ -45,6 +45,29 @@ std::int64_t RunLayout::Scenario(const RunId& id) const {
   return stages[id.stage].arms[id.arm].first_scenario + id.mission;
 }
 
+std::optional<RunId> RunLayout::Place(std::int64_t run, std::int64_t mission) const {
+  std::int64_t first = 0;
+  for (std::size_t s = 0; s < stages.size(); ++s) {
+    const auto arms = static_cast<std::int64_t>(stages[s].arms.size());
+    if (run >= first && run < first + arms && mission >= 0 && mission < stages[s].missions)
+      return RunId{static_cast<int>(s), static_cast<int>(run - first), static_cast<int>(mission)};
+    first += arms;
+  }
+  return std::nullopt;
+}
+
+std::string RunLayout::DescribeKeys(std::int64_t run, std::int64_t mission) const {
+  std::int64_t first = 0;
+  for (const Stage& stage : stages) {
+    const auto arms = static_cast<std::int64_t>(stage.arms.size());
+    if (run >= first && run < first + arms)
+      return fmt::format("stage {}, arm {}, mission {}", stage.name,
+                         stage.arms[static_cast<std::size_t>(run - first)].name, mission);
+    first += arms;
+  }
+  return fmt::format("run {}, mission {}", run, mission);
+}
+
 std::string RunLayout::Describe(const RunId& id) const {
   ED3R_CHECK(Contains(id), fmt::format("{}/{}/{}", id.stage, id.arm, id.mission));
   const Stage& stage = stages[id.stage];

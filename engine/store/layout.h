@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,12 @@ struct RunLayout {
   std::int64_t LinearIndex(const RunId& id) const;
   bool Contains(const RunId& id) const;
   std::int64_t Scenario(const RunId& id) const;
+  // The mission that the tables keep under these keys; none where the plan has no such mission.
+  std::optional<RunId> Place(std::int64_t run, std::int64_t mission) const;
   // "stage online, arm rbs, mission 12"
   std::string Describe(const RunId& id) const;
+  // The same for keys that need not be in the plan: "run 99, mission 12" where there is no such arm.
+  std::string DescribeKeys(std::int64_t run, std::int64_t mission) const;
 };
 
 RunLayout LayoutOf(const SweepPlan& plan);

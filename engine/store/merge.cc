@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "engine/core/check.h"
+#include "engine/store/damage.h"
 #include "engine/store/digest.h"
 #include "engine/store/reader.h"
 #include "engine/store/records.h"
@@ -17,10 +18,13 @@ namespace {
 // A result file that others are merged into; the transaction is the caller's.
 class Target {
  public:
-  Target(Connection& database, std::string dir)
-      : dir_(std::move(dir)),
-        writer_(database),
-        reader_(database),
+  // `layout` must outlive it.
+  Target(Connection& database, const RunLayout& layout, std::string dir)
+      : database_(database),
+        layout_(layout),
+        dir_(std::move(dir)),
+        writer_(database, layout),
+        cursor_(database, layout, MissionCursor::kOneMission, Steps::kLoad),
         // Merged while it ran and again after its end: the end is the news.
         put_session_(database,
                      "INSERT INTO sessions VALUES (?, ?, ?, ?, nullif(?, '')) ON CONFLICT DO UPDATE "
@@ -30,6 +34,7 @@ class Target {
 
   void Add(ResultReader& source) {
     AddSessions(source);
+    PutNetworks(database_, layout_, source.Networks());
     source.ForEachMission(Steps::kLoad, [&](const StoredMission& mission) { AddMission(source, mission); });
     AddFailures(source);
   }
@@ -46,16 +51,16 @@ class Target {
 
   void AddMission(const ResultReader& source, const StoredMission& mission) {
     const std::int64_t run = source.Layout().RunIndex(mission.id);
-    MissionRecord present;
-    if (reader_.ReadMission(run, mission.id.mission, present)) {
-      if (CanonicalBytes(present) != CanonicalBytes(mission.record))
+    if (cursor_.Seek(run, mission.id.mission)) {
+      cursor_.Checked();
+      if (CanonicalBytes(cursor_.record()) != CanonicalBytes(mission.record))
         throw UserError(fmt::format("{}: {} differs from the record of another store that is merged into {}",
                                     source.dir(), source.Layout().Describe(mission.id), dir_));
       ++summary_.present;
       return;
     }
-    writer_.InsertMission(run, mission.id.mission, mission.record);
-    writer_.InsertTiming(run, mission.id.mission, mission.session, mission.wall_s);
+    writer_.InsertMission(mission.id, mission.record);
+    writer_.InsertTiming(mission.id, mission.session, mission.wall_s);
     ++summary_.added;
   }
 
@@ -66,14 +71,15 @@ class Target {
       has_mission_.Bind(1, std::int64_t{failure.id.mission});
       const bool flown = has_mission_.Step();
       has_mission_.Reset();
-      if (!flown)
-        writer_.InsertFailure(run, failure.id.mission, failure.scenario, failure.seed, failure.message);
+      if (!flown) writer_.InsertFailure(failure.id, failure.scenario, failure.seed, failure.message);
     }
   }
 
+  Connection& database_;
+  const RunLayout& layout_;
   std::string dir_;
   RecordWriter writer_;
-  RecordReader reader_;
+  MissionCursor cursor_;
   Statement put_session_, put_note_, has_mission_;
   MergeSummary summary_;
 };
@@ -82,9 +88,19 @@ void CheckSameRecipe(const ResultReader& first, const ResultReader& other) {
   if (const auto difference = Difference(first.StoredRecipe(), other.StoredRecipe()))
     throw UserError(
         fmt::format("{} (there) and {} (here) cannot be merged: {}", first.dir(), other.dir(), *difference));
+  for (const auto& [there, here] : {std::pair(&first, &other), std::pair(&other, &first)})
+    if (const auto code = CodeDifference(there->StoredRecipe().code, here->StoredRecipe().code))
+      throw UserError(
+          fmt::format("{} (there) and {} (here) cannot be merged: {}", there->dir(), here->dir(), *code));
   if (!first.Layout().SameMissions(other.Layout()))
     throw UserError(fmt::format("{} and {} cannot be merged: their stages, arms or seeds differ", first.dir(),
                                 other.dir()));
+}
+
+// What is in `out` already and in no source would come through unseen.
+void CheckWhole(Connection& database, const RunLayout& layout) {
+  const std::vector<DamagedMission> damage = FindDamage(database, layout);
+  if (!damage.empty()) throw UserError(DamageText(database.file(), damage.front()));
 }
 
 bool SameDirectory(const std::string& a, const std::string& b) {
@@ -100,14 +116,16 @@ MergeSummary MergeStores(const std::string& out, const std::vector<std::string>&
     sources.push_back(std::make_unique<ResultReader>(dir));
     CheckSameRecipe(*sources.front(), *sources.back());
   }
-  const Recipe recipe = sources.front()->StoredRecipe();
+  Recipe recipe = sources.front()->StoredRecipe();
+  recipe.files = sources.front()->Files();
   const RunLayout layout = sources.front()->Layout();
   // What is in `out` need not be copied; and a reader on it would keep its file in WAL mode.
   std::erase_if(sources, [&](const auto& source) { return SameDirectory(source->dir(), out); });
   StoreFile file(out, recipe, layout);
   try {
     Transaction transaction(file.database(), Transaction::Kind::kWrite);
-    Target target(file.database(), out);
+    CheckWhole(file.database(), layout);
+    Target target(file.database(), layout, out);
     for (const auto& source : sources) target.Add(*source);
     MergeSummary summary = target.summary();
     summary.failed = file.database().Int("SELECT count(*) FROM failures");

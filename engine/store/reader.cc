@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "engine/core/check.h"
-#include "engine/store/columns.h"
-#include "engine/store/records.h"
+#include "engine/store/damage.h"
 #include "engine/store/schema.h"
 
 namespace ed3r {
@@ -20,53 +21,57 @@ std::string ExistingFile(const std::string& dir) {
   return file.string();
 }
 
-RunId ReadId(const Statement& row) {
-  return {static_cast<int>(row.Int(0)), static_cast<int>(row.Int(1)), static_cast<int>(row.Int(2))};
-}
-
 }  // namespace
 
 ResultReader::ResultReader(const std::string& dir)
     : dir_(dir), database_(ExistingFile(dir), Connection::Access::kReadOnly) {
-  if (CheckFile(database_) == FileKind::kEmpty)
+  if (CheckFile(database_, FileUse::kRead) == FileKind::kEmpty)
     throw UserError(fmt::format("{}: no results in it yet ({} is empty)", dir, kResultsFile));
+  format_ = static_cast<int>(database_.Int("PRAGMA user_version"));
+  tables_.emplace(database_);
   layout_ = ReadLayout(database_);
   recipe_ = ReadRecipe(database_);
 }
 
-std::vector<RunId> ResultReader::Stored() { return ReadStored(database_); }
+std::vector<InputFile> ResultReader::Files() { return ReadFiles(database_); }
+
+FlownNetworks ResultReader::Networks() { return ReadNetworks(database_, layout_); }
+
+std::vector<RunId> ResultReader::Stored() { return ReadStored(database_, layout_); }
+
+std::int64_t ResultReader::CountMissions() { return database_.Int("SELECT count(*) FROM missions"); }
 
 std::vector<ArmStatus> ResultReader::Status() {
-  Statement select(database_, R"(
-    SELECT stages.name, runs.name, stages.missions,
-      (SELECT count(*) FROM missions WHERE missions.run = runs.run),
-      (SELECT count(*) FROM failures WHERE failures.run = runs.run),
-      (SELECT total(duration_s) FROM missions WHERE missions.run = runs.run),
-      (SELECT total(wall_s) FROM timings WHERE timings.run = runs.run)
-    FROM runs JOIN stages USING (stage) ORDER BY run)");
+  const Transaction moment(database_, Transaction::Kind::kRead);
   std::vector<ArmStatus> status;
-  while (select.Step()) {
-    ArmStatus& arm = status.emplace_back();
-    arm.stage = select.Text(0);
-    arm.arm = select.Text(1);
-    arm.planned = select.Int(2);
-    arm.done = select.Int(3);
-    arm.failed = select.Int(4);
-    arm.missing = arm.planned - arm.done - arm.failed;
-    arm.simulated_s = select.Real(5);
-    arm.wall_s = select.Real(6);
+  for (const RunLayout::Stage& stage : layout_.stages)
+    for (const RunLayout::Arm& arm : stage.arms)
+      status.push_back({.stage = stage.name, .arm = arm.name, .planned = stage.missions});
+  MissionCursor cursor(database_, layout_, "", Steps::kSkip);
+  while (cursor.Next()) {
+    ArmStatus& arm = status[static_cast<std::size_t>(layout_.RunIndex(cursor.Checked()))];
+    ++arm.done;
+    arm.simulated_s += cursor.record().duration_s;
+    if (!std::isnan(cursor.wall_s())) arm.wall_s += cursor.wall_s();
   }
+  for (const FailedMission& failure : Failures())
+    ++status[static_cast<std::size_t>(layout_.RunIndex(failure.id))].failed;
+  for (ArmStatus& arm : status) arm.missing = arm.planned - arm.done - arm.failed;
   return status;
 }
 
 std::vector<FailedMission> ResultReader::Failures() {
   Statement select(database_,
-                   "SELECT stage, arm, mission, scenario, seed, message FROM failures JOIN runs USING (run) "
-                   "ORDER BY run, mission");
+                   "SELECT run, mission, scenario, seed, message FROM failures ORDER BY run, mission");
   std::vector<FailedMission> failures;
-  while (select.Step())
-    failures.push_back(
-        {ReadId(select), select.Int(3), static_cast<std::uint64_t>(select.Int(4)), select.Text(5)});
+  while (select.Step()) {
+    const std::optional<RunId> id = layout_.Place(select.Int(0), select.Int(1));
+    if (!id)
+      throw UserError(DamageText(
+          database_.file(), {select.Int(0), select.Int(1), layout_.DescribeKeys(select.Int(0), select.Int(1)),
+                             "it is said to have failed, but the plan has no such mission"}));
+    failures.push_back({*id, select.Int(2), static_cast<std::uint64_t>(select.Int(3)), select.Text(4)});
+  }
   return failures;
 }
 
@@ -97,48 +102,37 @@ void ResultReader::ForEachMission(int stage, int arm, Steps steps, const Mission
 
 void ResultReader::Visit(const std::string& where, Steps steps, const MissionVisitor& visit) {
   const Transaction moment(database_, Transaction::Kind::kRead);
-  Statement select(database_,
-                   fmt::format("SELECT stage, runs.arm, mission, run, session, wall_s, {} FROM missions "
-                               "JOIN runs USING (run) LEFT JOIN timings USING (run, mission) {} "
-                               "ORDER BY run, mission",
-                               ColumnNames<MissionRecord>(), where));
-  RecordReader reader(database_);
-  while (select.Step()) {
-    StoredMission mission;
-    mission.id = ReadId(select);
-    mission.session = select.Int(4);
-    mission.wall_s = select.Real(5);
-    ReadColumns(select, 6, mission.record);
-    if (steps == Steps::kLoad) reader.ReadSteps(select.Int(3), mission.id.mission, mission.record.steps);
-    visit(mission);
-  }
+  MissionCursor cursor(database_, layout_, where, steps);
+  while (cursor.Next())
+    visit({cursor.Checked(), cursor.record(), cursor.session(), cursor.wall_s(), cursor.checksum()});
 }
 
 void ResultReader::ForEachTimestep(int stage, int arm,
                                    const std::function<void(int, const TimestepRecord&)>& visit) {
-  Statement select(database_,
-                   fmt::format("SELECT mission, {} FROM timesteps WHERE run = {} ORDER BY mission, k",
-                               ColumnNames<TimestepRecord>(), layout_.RunIndex(stage, arm)));
-  TimestepRecord step;
-  while (select.Step()) {
-    ReadColumns(select, 1, step);
-    visit(static_cast<int>(select.Int(0)), step);
-  }
+  ForEachMission(stage, arm, Steps::kLoad, [&](const StoredMission& mission) {
+    for (const TimestepRecord& step : mission.record.steps) visit(mission.id.mission, step);
+  });
 }
 
 StoredMission ResultReader::LoadMission(const RunId& id) {
   if (!layout_.Contains(id))
     throw UserError(fmt::format("{}: no mission {} of arm {} of stage {} in the plan", dir_, id.mission,
                                 id.arm, id.stage));
-  StoredMission loaded;
-  bool found = false;
+  std::optional<StoredMission> loaded;
   Visit(fmt::format("WHERE missions.run = {} AND missions.mission = {}", layout_.RunIndex(id), id.mission),
-        Steps::kLoad, [&](const StoredMission& mission) {
-          loaded = mission;
-          found = true;
-        });
-  if (!found) throw UserError(fmt::format("{}: {} is not stored", dir_, layout_.Describe(id)));
-  return loaded;
+        Steps::kLoad, [&](const StoredMission& mission) { loaded = mission; });
+  if (!loaded) throw UserError(fmt::format("{}: {} is not stored", dir_, layout_.Describe(id)));
+  return *loaded;
+}
+
+void ResultReader::CheckWhole() {
+  const std::vector<DamagedMission> damage = FindDamage();
+  if (!damage.empty()) throw UserError(DamageText(database_.file(), damage.front()));
+}
+
+std::vector<DamagedMission> ResultReader::FindDamage() {
+  const Transaction moment(database_, Transaction::Kind::kRead);
+  return ed3r::FindDamage(database_, layout_);
 }
 
 }  // namespace ed3r

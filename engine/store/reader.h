@@ -2,18 +2,22 @@
 // mission, then k. A reader may be open while another process writes: each call sees one moment of the file.
 //
 // Threads: one reader is used by one thread at a time; open one per thread.
-// Errors: UserError when there is no store, or a damaged one.
+// Errors: UserError when there is no store, or a damaged one. Every mission that is read is compared with its checksum;
+// the first that differs is named in the error. FindDamage() goes on and names all.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/mission/record.h"
 #include "engine/store/layout.h"
+#include "engine/store/networks.h"
 #include "engine/store/recipe.h"
+#include "engine/store/records.h"
 #include "engine/store/sqlite.h"
 
 namespace ed3r {
@@ -23,6 +27,7 @@ struct StoredMission {
   MissionRecord record;
   std::int64_t session = 0;  // who flew it
   double wall_s = 0;         // and how long that took
+  std::string checksum;      // see checksums.h; "" in files of format 1
 };
 
 struct FailedMission {
@@ -49,17 +54,24 @@ struct ArmStatus {
   double simulated_s = 0, wall_s = 0;  // of the missions done; wall time summed over threads
 };
 
-enum class Steps { kSkip, kLoad };
-
 class ResultReader {
  public:
   explicit ResultReader(const std::string& dir);
 
   const std::string& dir() const { return dir_; }
   const RunLayout& Layout() const { return layout_; }
-  const Recipe& StoredRecipe() const { return recipe_; }  // without notes: see Sessions()
+  const Recipe& StoredRecipe() const { return recipe_; }  // without notes and files: see Sessions()
+  std::vector<InputFile> Files();
+  FlownNetworks Networks();
+
+  // Of the file: 1 has no checksums.
+  int Format() const { return format_; }
+
+  // The columns that the file has.
+  const RecordTables& Tables() const { return *tables_; }
 
   std::vector<RunId> Stored();
+  std::int64_t CountMissions();  // rows, whatever is in them
   std::vector<ArmStatus> Status();
   std::vector<FailedMission> Failures();
   std::vector<Session> Sessions();  // in order of their begin
@@ -76,11 +88,19 @@ class ResultReader {
   // With timesteps. UserError when it is not in the plan, or not stored (yet, or because it failed).
   StoredMission LoadMission(const RunId& id);
 
+  // UserError that names the first damaged mission of all that is stored.
+  void CheckWhole();
+
+  // Every mission that does not match its checksums or is not in the plan. Reads everything.
+  std::vector<DamagedMission> FindDamage();
+
  private:
   void Visit(const std::string& where, Steps steps, const MissionVisitor& visit);
 
   std::string dir_;
   Connection database_;
+  int format_ = 0;
+  std::optional<RecordTables> tables_;
   RunLayout layout_;
   Recipe recipe_;
 };

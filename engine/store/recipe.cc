@@ -1,6 +1,7 @@
 #include "engine/store/recipe.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string_view>
@@ -33,10 +34,32 @@ std::string PlanDifference(std::string_view there, std::string_view here) {
 
 }  // namespace
 
+std::string CodeText(const CodeIdentities& code) {
+  std::vector<std::string> parts;
+  for (const auto& [subsystem, identities] : code)
+    parts.push_back(fmt::format("{} {}", subsystem, fmt::join(identities, " and ")));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+bool MixedCode(const CodeIdentities& code) {
+  return std::any_of(code.begin(), code.end(), [](const auto& entry) { return entry.second.size() > 1; });
+}
+
+std::optional<std::string> CodeDifference(const CodeIdentities& there, const CodeIdentities& here) {
+  for (const auto& [subsystem, identities] : here) {
+    const auto known = there.find(subsystem);
+    if (known == there.end())
+      return fmt::format("its code is {} there and {} here", CodeText(there), CodeText(here));
+    for (const std::string& identity : identities)
+      if (!known->second.contains(identity))
+        return fmt::format("the code of {} is {} there and {} here", subsystem,
+                           fmt::join(known->second, " and "), identity);
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string> Difference(const Recipe& there, const Recipe& here) {
   if (there.plan_text != here.plan_text) return PlanDifference(there.plan_text, here.plan_text);
-  if (there.code_version != here.code_version)
-    return fmt::format("the code is {} there and {} here", there.code_version, here.code_version);
   for (const auto& [name, fingerprint] : there.inputs) {
     const auto other = here.inputs.find(name);
     if (other == here.inputs.end()) return fmt::format("{} is used there, but not here", name);

@@ -2,25 +2,35 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "engine/core/check.h"
 #include "engine/store/columns.h"
 
 namespace ed3r {
 
-RecordWriter::RecordWriter(Connection& database)
-    : insert_mission_(database,
-                      fmt::format("INSERT INTO missions VALUES ({})", Placeholders<MissionRecord>(2))),
-      insert_step_(database,
-                   fmt::format("INSERT INTO timesteps VALUES ({})", Placeholders<TimestepRecord>(2))),
+RecordWriter::RecordWriter(Connection& database, const RunLayout& layout)
+    : layout_(layout),
+      tables_(database),
+      insert_mission_(
+          database,
+          fmt::format("INSERT INTO missions (run, mission, checksum, steps_checksum, {}) VALUES ({})",
+                      ColumnNames<MissionRecord>(), Placeholders<MissionRecord>(4))),
+      insert_step_(database, fmt::format("INSERT INTO timesteps (run, mission, {}) VALUES ({})",
+                                         ColumnNames<TimestepRecord>(), Placeholders<TimestepRecord>(2))),
       insert_timing_(database, "INSERT OR REPLACE INTO timings VALUES (?, ?, ?, ?)"),
       insert_failure_(database, "INSERT OR REPLACE INTO failures VALUES (?, ?, ?, ?, ?)"),
       delete_failure_(database, "DELETE FROM failures WHERE run = ? AND mission = ?") {}
 
-void RecordWriter::InsertMission(std::int64_t run, std::int64_t mission, const MissionRecord& record) {
+void RecordWriter::InsertMission(const RunId& id, const MissionRecord& record) {
   CheckStorable(record);
+  const std::int64_t run = layout_.RunIndex(id), mission = id.mission;
+  const Checksums checksums = tables_.Of(layout_, id, record);
   insert_mission_.Bind(0, run);
   insert_mission_.Bind(1, mission);
-  BindColumns(insert_mission_, 2, record);
+  insert_mission_.Bind(2, checksums.mission);
+  insert_mission_.Bind(3, checksums.steps);
+  BindColumns(insert_mission_, 4, record);
   insert_mission_.Run();
   insert_step_.Bind(0, run);
   insert_step_.Bind(1, mission);
@@ -31,13 +41,14 @@ void RecordWriter::InsertMission(std::int64_t run, std::int64_t mission, const M
   delete_failure_.Run(run, mission);
 }
 
-void RecordWriter::InsertTiming(std::int64_t run, std::int64_t mission, std::int64_t session, double wall_s) {
-  insert_timing_.Run(run, mission, session, wall_s);
+void RecordWriter::InsertTiming(const RunId& id, std::int64_t session, double wall_s) {
+  insert_timing_.Run(layout_.RunIndex(id), std::int64_t{id.mission}, session, wall_s);
 }
 
-void RecordWriter::InsertFailure(std::int64_t run, std::int64_t mission, std::int64_t scenario,
-                                 std::uint64_t seed, const std::string& message) {
-  insert_failure_.Run(run, mission, scenario, static_cast<std::int64_t>(seed), message);
+void RecordWriter::InsertFailure(const RunId& id, std::int64_t scenario, std::uint64_t seed,
+                                 const std::string& message) {
+  insert_failure_.Run(layout_.RunIndex(id), std::int64_t{id.mission}, scenario,
+                      static_cast<std::int64_t>(seed), message);
 }
 
 void CheckStorable(const MissionRecord& record) {
@@ -46,30 +57,76 @@ void CheckStorable(const MissionRecord& record) {
                fmt::format("timestep {} follows timestep {}", record.steps[i].k, record.steps[i - 1].k));
 }
 
-RecordReader::RecordReader(Connection& database)
-    : select_mission_(database, fmt::format("SELECT {} FROM missions WHERE run = ? AND mission = ?",
-                                            ColumnNames<MissionRecord>())),
-      select_steps_(database, fmt::format("SELECT {} FROM timesteps WHERE run = ? AND mission = ? ORDER BY k",
-                                          ColumnNames<TimestepRecord>())) {}
-
-bool RecordReader::ReadMission(std::int64_t run, std::int64_t mission, MissionRecord& record) {
-  select_mission_.Bind(0, run);
-  select_mission_.Bind(1, mission);
-  const bool found = select_mission_.Step();
-  if (found) {
-    ReadColumns(select_mission_, 0, record);
-    ReadSteps(run, mission, record.steps);
-  }
-  select_mission_.Reset();
-  return found;
+std::string DamageText(const std::string& file, const DamagedMission& damage) {
+  return fmt::format(
+      "{}: {} is damaged: {}; 'ed3r verify DIR' names all that is damaged, 'ed3r run SWEEP --repair' "
+      "flies it again",
+      file, damage.name, damage.what);
 }
 
-void RecordReader::ReadSteps(std::int64_t run, std::int64_t mission, std::vector<TimestepRecord>& steps) {
-  select_steps_.Bind(0, run);
-  select_steps_.Bind(1, mission);
-  steps.clear();
-  while (select_steps_.Step()) ReadColumns(select_steps_, 0, steps.emplace_back());
-  select_steps_.Reset();
+MissionCursor::MissionCursor(Connection& database, const RunLayout& layout, const std::string& where,
+                             Steps steps)
+    : database_(database),
+      layout_(layout),
+      tables_(database),
+      with_steps_(steps == Steps::kLoad),
+      select_(database,
+              fmt::format(
+                  "SELECT missions.run, missions.mission, session, wall_s, {}, {} FROM missions LEFT JOIN "
+                  "timings USING (run, mission) {} ORDER BY missions.run, missions.mission",
+                  tables_.checked() ? "checksum, steps_checksum" : "'', ''", tables_.missions().selection(),
+                  where)),
+      select_steps_(database, fmt::format("SELECT {} FROM timesteps WHERE run = ? AND mission = ? ORDER BY k",
+                                          tables_.timesteps().selection())) {}
+
+bool MissionCursor::Seek(std::int64_t run, std::int64_t mission) {
+  select_.Reset();
+  select_.Bind(0, run);
+  select_.Bind(1, mission);
+  return Next();
+}
+
+bool MissionCursor::Next() {
+  if (!select_.Step()) return false;
+  Load();
+  return true;
+}
+
+void MissionCursor::Load() {
+  checksum_ = select_.Text(4);
+  ReadColumns(select_, 6, record_);
+  record_.steps.clear();
+  if (with_steps_) {
+    select_steps_.Bind(0, run());
+    select_steps_.Bind(1, mission());
+    while (select_steps_.Step()) ReadColumns(select_steps_, 0, record_.steps.emplace_back());
+    select_steps_.Reset();
+  }
+  damage_ = {run(), mission(), "", ""};
+  const std::optional<RunId> place = layout_.Place(run(), mission());
+  if (!place) {
+    damage_.name = layout_.DescribeKeys(run(), mission());
+    damage_.what = "the plan has no such mission";
+    return;
+  }
+  id_ = *place;
+  damage_.what = WhatIsWrong(id_);
+  if (Damaged()) damage_.name = layout_.Describe(id_);
+}
+
+std::string MissionCursor::WhatIsWrong(const RunId& id) const {
+  if (!tables_.checked()) return "";
+  const std::string steps = select_.Text(5);
+  if (tables_.MissionChecksum(layout_, id, record_, steps) != checksum_)
+    return "its record does not match its checksum";
+  if (with_steps_ && tables_.StepsChecksum(record_.steps) != steps)
+    return "its timesteps do not match their checksum";
+  return "";
+}
+
+RunId MissionCursor::Checked() const {
+  if (Damaged()) throw UserError(DamageText(database_.file(), damage_));
+  return id_;
 }
 
 }  // namespace ed3r

@@ -1,4 +1,4 @@
-// Whole missions into the tables and out of them. Within a transaction of the caller's.
+// Whole missions into the tables and out of them, with their checksums. Within a transaction of the caller's.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "engine/mission/record.h"
+#include "engine/store/checksums.h"
+#include "engine/store/layout.h"
 #include "engine/store/sqlite.h"
 
 namespace ed3r {
@@ -15,29 +17,72 @@ void CheckStorable(const MissionRecord& record);
 
 class RecordWriter {
  public:
-  explicit RecordWriter(Connection& database);
+  // `layout` must outlive it.
+  RecordWriter(Connection& database, const RunLayout& layout);
 
   // Takes a failure of the same mission away: it has been flown now.
-  void InsertMission(std::int64_t run, std::int64_t mission, const MissionRecord& record);
-  void InsertTiming(std::int64_t run, std::int64_t mission, std::int64_t session, double wall_s);
+  void InsertMission(const RunId& id, const MissionRecord& record);
+  void InsertTiming(const RunId& id, std::int64_t session, double wall_s);
   // Replaces an older failure of the same mission.
-  void InsertFailure(std::int64_t run, std::int64_t mission, std::int64_t scenario, std::uint64_t seed,
-                     const std::string& message);
+  void InsertFailure(const RunId& id, std::int64_t scenario, std::uint64_t seed, const std::string& message);
 
  private:
+  const RunLayout& layout_;
+  RecordTables tables_;
   Statement insert_mission_, insert_step_, insert_timing_, insert_failure_, delete_failure_;
 };
 
-class RecordReader {
- public:
-  explicit RecordReader(Connection& database);
+enum class Steps { kSkip, kLoad };
 
-  // With timesteps; false when it is not stored.
-  bool ReadMission(std::int64_t run, std::int64_t mission, MissionRecord& record);
-  void ReadSteps(std::int64_t run, std::int64_t mission, std::vector<TimestepRecord>& steps);
+// A mission that cannot be believed. `run` and `mission` are its key in the tables.
+struct DamagedMission {
+  std::int64_t run = 0, mission = 0;
+  std::string name;  // "stage online, arm rbs, mission 12"
+  std::string what;  // "its timesteps do not match their checksum"
+};
+
+// One line: the file, the mission, what is wrong with it and what to do.
+std::string DamageText(const std::string& file, const DamagedMission& damage);
+
+// Goes through missions in plan order and compares each with its checksums.
+class MissionCursor {
+ public:
+  // `where` selects among the columns of the table missions, with `?` for what Seek gives; "" for all. With
+  // Steps::kSkip records come without their timesteps, which are then not compared either. `layout` must outlive it.
+  MissionCursor(Connection& database, const RunLayout& layout, const std::string& where, Steps steps);
+
+  // To the mission of these keys, if it is there: for a `where` of kOneMission.
+  bool Seek(std::int64_t run, std::int64_t mission);
+  bool Next();
+
+  std::int64_t run() const { return select_.Int(0); }
+  std::int64_t mission() const { return select_.Int(1); }
+  std::int64_t session() const { return select_.Int(2); }
+  double wall_s() const { return select_.Real(3); }
+  const std::string& checksum() const { return checksum_; }  // "" in files of format 1
+  const MissionRecord& record() const { return record_; }
+
+  // What is wrong with the present mission, nothing when it is whole.
+  bool Damaged() const { return !damage_.what.empty(); }
+  const DamagedMission& damage() const { return damage_; }
+  // The present mission's place in the plan. UserError with DamageText when it is damaged.
+  RunId Checked() const;
+
+  static constexpr char kOneMission[] = "WHERE missions.run = ? AND missions.mission = ?";
 
  private:
-  Statement select_mission_, select_steps_;
+  void Load();
+  std::string WhatIsWrong(const RunId& id) const;
+
+  Connection& database_;
+  const RunLayout& layout_;
+  RecordTables tables_;
+  bool with_steps_;
+  Statement select_, select_steps_;
+  MissionRecord record_;
+  std::string checksum_;
+  DamagedMission damage_;
+  RunId id_;
 };
 
 }  // namespace ed3r

@@ -6,11 +6,15 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "engine/core/check.h"
+#include "engine/core/sha256.h"
 #include "engine/mission/record.h"
+#include "engine/store/checksums.h"
 #include "engine/store/columns.h"
+#include "engine/store/records.h"
 
 namespace ed3r {
 namespace {
@@ -19,51 +23,103 @@ constexpr std::int64_t kApplicationId = 0x45443352;  // "ED3R"
 
 std::string TableDefinitions() {
   return fmt::format(R"(
-CREATE TABLE recipe (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE worlds (file TEXT PRIMARY KEY, fingerprint TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE stages (stage INTEGER PRIMARY KEY, name TEXT NOT NULL, missions INTEGER NOT NULL);
+CREATE TABLE recipe (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT, WITHOUT ROWID;
+CREATE TABLE code (subsystem TEXT, identity TEXT, PRIMARY KEY (subsystem, identity)) STRICT, WITHOUT ROWID;
+CREATE TABLE inputs (name TEXT PRIMARY KEY, fingerprint TEXT NOT NULL) STRICT, WITHOUT ROWID;
+CREATE TABLE places (called TEXT PRIMARY KEY, file TEXT NOT NULL) STRICT, WITHOUT ROWID;
+CREATE TABLE files (name TEXT PRIMARY KEY, sha256 TEXT NOT NULL, content BLOB) STRICT;
+CREATE TABLE stages (stage INTEGER PRIMARY KEY, name TEXT NOT NULL, missions INTEGER NOT NULL) STRICT;
 CREATE TABLE runs (run INTEGER PRIMARY KEY, stage INTEGER NOT NULL, arm INTEGER NOT NULL, name TEXT NOT NULL,
-  first_scenario INTEGER NOT NULL);
+  first_scenario INTEGER NOT NULL) STRICT;
+CREATE TABLE networks (sha256 TEXT PRIMARY KEY, name TEXT NOT NULL, model BLOB NOT NULL,
+  checksum TEXT NOT NULL) STRICT;
+CREATE TABLE flown_networks (run INTEGER, seed INTEGER, agent TEXT, sha256 TEXT NOT NULL,
+  PRIMARY KEY (run, seed, agent)) STRICT, WITHOUT ROWID;
 CREATE TABLE sessions (session INTEGER PRIMARY KEY, host TEXT NOT NULL, process INTEGER NOT NULL,
-  begun_utc TEXT NOT NULL, ended_utc TEXT);
+  begun_utc TEXT NOT NULL, ended_utc TEXT) STRICT;
 CREATE TABLE session_notes (session INTEGER, key TEXT, value TEXT NOT NULL, PRIMARY KEY (session, key))
-  WITHOUT ROWID;
+  STRICT, WITHOUT ROWID;
 CREATE TABLE failures (run INTEGER, mission INTEGER, scenario INTEGER NOT NULL, seed INTEGER NOT NULL,
-  message TEXT NOT NULL, PRIMARY KEY (run, mission)) WITHOUT ROWID;
+  message TEXT NOT NULL, PRIMARY KEY (run, mission)) STRICT, WITHOUT ROWID;
 CREATE TABLE timings (run INTEGER, mission INTEGER, session INTEGER NOT NULL, wall_s REAL NOT NULL,
-  PRIMARY KEY (run, mission)) WITHOUT ROWID;
-CREATE TABLE missions (run INTEGER, mission INTEGER, {}, PRIMARY KEY (run, mission)) WITHOUT ROWID;
-CREATE TABLE timesteps (run INTEGER, mission INTEGER, {}, PRIMARY KEY (run, mission, k)) WITHOUT ROWID;
+  PRIMARY KEY (run, mission)) STRICT, WITHOUT ROWID;
+CREATE TABLE missions (run INTEGER, mission INTEGER, checksum TEXT NOT NULL, steps_checksum TEXT NOT NULL, {},
+  PRIMARY KEY (run, mission)) STRICT, WITHOUT ROWID;
+CREATE TABLE timesteps (run INTEGER, mission INTEGER, {}, PRIMARY KEY (run, mission, k)) STRICT, WITHOUT ROWID;
 )",
                      ColumnDefinitions<MissionRecord>(), ColumnDefinitions<TimestepRecord>());
 }
 
-void CheckColumns(Connection& database, const std::string& table, const std::string& wanted) {
-  Statement info(database, fmt::format("SELECT name FROM pragma_table_info('{}') LIMIT -1 OFFSET 2", table));
-  std::string names;  // after the keys run and mission
-  while (info.Step()) names += (names.empty() ? "" : ", ") + info.Text(0);
-  if (names == wanted) return;
+// Over everything that says what the missions are missions of: the name of each table, then its rows as texts.
+std::string RecipeChecksum(Connection& database) {
+  struct Part {
+    const char *table, *rows;
+  };
+  constexpr Part kParts[] = {{"recipe", "key, value FROM recipe WHERE key != 'checksum' ORDER BY key"},
+                             {"code", "subsystem, identity FROM code ORDER BY subsystem, identity"},
+                             {"inputs", "name, fingerprint FROM inputs ORDER BY name"},
+                             {"places", "called, file FROM places ORDER BY called"},
+                             {"files", "name, sha256 FROM files ORDER BY name"},
+                             {"stages", "stage, name, missions FROM stages ORDER BY stage"},
+                             {"runs", "run, stage, arm, name, first_scenario FROM runs ORDER BY run"}};
+  std::string bytes;
+  for (const auto& [table, query] : kParts) {
+    AppendText(bytes, table);
+    Statement rows(database, fmt::format("SELECT {}", query));
+    while (rows.Step())
+      for (int column = 0; column < rows.Columns(); ++column) AppendText(bytes, rows.Text(column));
+  }
+  Sha256 sha;
+  sha.Update(bytes);
+  return sha.Hex();
+}
+
+void SealRecipe(Connection& database) {
+  Statement seal(database, "INSERT OR REPLACE INTO recipe VALUES ('checksum', ?)");
+  seal.Run(RecipeChecksum(database));
+}
+
+std::optional<std::string> RecipeValue(Connection& database, std::string_view key) {
+  Statement select(database, "SELECT value FROM recipe WHERE key = ?");
+  select.Bind(0, key);
+  if (!select.Step()) return std::nullopt;
+  return select.Text(0);
+}
+
+[[noreturn]] void FailDamagedRecipe(const Connection& database, std::string_view what) {
   throw UserError(
-      fmt::format("{}: written by another version of ed3r (code {}): the columns of its table {} differ",
-                  database.file(), ReadRecipe(database).code_version, table));
+      fmt::format("{}: the file is damaged: {}; it cannot be repaired: fly it again into another --out",
+                  database.file(), what));
+}
+
+std::string NeededRecipeValue(Connection& database, std::string_view key) {
+  const std::optional<std::string> value = RecipeValue(database, key);
+  if (!value) FailDamagedRecipe(database, fmt::format("its recipe has no {}", key));
+  return *value;
 }
 
 }  // namespace
 
-FileKind CheckFile(Connection& database) {
+FileKind CheckFile(Connection& database, FileUse use) {
   const std::int64_t application = database.Int("PRAGMA application_id");
   const std::int64_t version = database.Int("PRAGMA user_version");
   if (application == 0 && database.Int("SELECT count(*) FROM sqlite_schema") == 0) return FileKind::kEmpty;
   if (application != kApplicationId)
     throw UserError(fmt::format("{}: an SQLite file, but not one of ed3r", database.file()));
   if (version > kSchemaVersion)
-    throw UserError(fmt::format("{}: written by a newer ed3r (schema {}, this one knows {})", database.file(),
+    throw UserError(fmt::format("{}: written by a newer ed3r (format {}, this one knows {})", database.file(),
                                 version, kSchemaVersion));
-  if (version < kSchemaVersion)
-    throw UserError(fmt::format("{}: written by an older ed3r (schema {}, this one needs {})",
-                                database.file(), version, kSchemaVersion));
-  CheckColumns(database, "missions", ColumnNames<MissionRecord>());
-  CheckColumns(database, "timesteps", ColumnNames<TimestepRecord>());
+  if (version < 1)
+    throw UserError(fmt::format("{}: written by an older ed3r (format {}, this one reads 1 and up)",
+                                database.file(), version));
+  const RecordTables tables(database);
+  if (version >= 2 && RecipeChecksum(database) != RecipeValue(database, "checksum"))
+    FailDamagedRecipe(database, "its plan, layout or inputs do not match their checksum");
+  if (use == FileUse::kWrite && (version < kSchemaVersion || !tables.complete()))
+    throw UserError(
+        fmt::format("{}: written by an older ed3r (code {}): it can be read, but not continued; give "
+                    "another --out",
+                    database.file(), CodeText(ReadRecipe(database).code)));
   return FileKind::kStore;
 }
 
@@ -73,9 +129,17 @@ void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& l
   put.Run("sweep", layout.name);
   put.Run("seed", std::to_string(layout.seed));
   put.Run("plan", recipe.plan_text);
-  put.Run("code_version", recipe.code_version);
-  Statement put_input(database, "INSERT INTO worlds VALUES (?, ?)");
-  for (const auto& [file, fingerprint] : recipe.inputs) put_input.Run(file, fingerprint);
+  Statement put_input(database, "INSERT INTO inputs VALUES (?, ?)");
+  for (const auto& [name, fingerprint] : recipe.inputs) put_input.Run(name, fingerprint);
+  Statement put_place(database, "INSERT INTO places VALUES (?, ?)");
+  for (const auto& [called, file] : recipe.places) put_place.Run(called, file);
+  Statement put_file(database, "INSERT INTO files VALUES (?, ?, ?)");
+  for (const InputFile& file : recipe.files) {
+    put_file.Bind(0, file.name);
+    put_file.Bind(1, file.sha256);
+    file.content ? put_file.BindBlob(2, *file.content) : put_file.BindNull(2);
+    put_file.Run();
+  }
   Statement put_stage(database, "INSERT INTO stages VALUES (?, ?, ?)");
   Statement put_run(database, "INSERT INTO runs VALUES (?, ?, ?, ?, ?)");
   std::int64_t run = 0;
@@ -87,53 +151,65 @@ void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& l
       put_run.Run(run++, number, static_cast<std::int64_t>(a), stage.arms[a].name,
                   stage.arms[a].first_scenario);
   }
+  AddCode(database, recipe.code);
   database.Execute(
       fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kSchemaVersion));
 }
 
-namespace {
-
-[[noreturn]] void Damaged(const Connection& database, const std::string& what) {
-  throw UserError(fmt::format("{}: the file is damaged ({})", database.file(), what));
+void AddCode(Connection& database, const CodeIdentities& code) {
+  Statement put(database, "INSERT OR IGNORE INTO code VALUES (?, ?)");
+  for (const auto& [subsystem, identities] : code)
+    for (const std::string& identity : identities) put.Run(subsystem, identity);
+  SealRecipe(database);
 }
-
-std::string RecipeValue(Connection& database, const char* key) {
-  Statement select(database, "SELECT value FROM recipe WHERE key = ?");
-  select.Bind(0, std::string_view(key));
-  if (!select.Step()) Damaged(database, fmt::format("its recipe has no '{}'", key));
-  return select.Text(0);
-}
-
-std::uint64_t Seed(Connection& database) {
-  const std::string text = RecipeValue(database, "seed");
-  std::uint64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (error != std::errc() || end != text.data() + text.size())
-    Damaged(database, fmt::format("its seed is '{}'", text));
-  return seed;
-}
-
-}  // namespace
 
 Recipe ReadRecipe(Connection& database) {
   Recipe recipe;
-  recipe.plan_text = RecipeValue(database, "plan");
-  recipe.code_version = RecipeValue(database, "code_version");
-  Statement inputs(database, "SELECT file, fingerprint FROM worlds");
+  recipe.plan_text = NeededRecipeValue(database, "plan");
+  if (database.Int("PRAGMA user_version") < 2) {
+    recipe.code = {{"sources", {NeededRecipeValue(database, "code_version")}}};
+    Statement inputs(database, "SELECT file, fingerprint FROM worlds");
+    while (inputs.Step()) recipe.inputs[inputs.Text(0)] = inputs.Text(1);
+    return recipe;
+  }
+  Statement code(database, "SELECT subsystem, identity FROM code");
+  while (code.Step()) recipe.code[code.Text(0)].insert(code.Text(1));
+  Statement inputs(database, "SELECT name, fingerprint FROM inputs");
   while (inputs.Step()) recipe.inputs[inputs.Text(0)] = inputs.Text(1);
+  Statement places(database, "SELECT called, file FROM places");
+  while (places.Step()) recipe.places[places.Text(0)] = places.Text(1);
   return recipe;
+}
+
+std::vector<InputFile> ReadFiles(Connection& database) {
+  std::vector<InputFile> files;
+  if (database.Int("PRAGMA user_version") < 2) return files;
+  Statement select(database, "SELECT name, sha256, content FROM files ORDER BY name");
+  while (select.Step()) {
+    InputFile& file = files.emplace_back(InputFile{select.Text(0), select.Text(1), std::nullopt});
+    if (select.IsNull(2)) continue;
+    file.content = select.Blob(2);
+    Sha256 sha;
+    sha.Update(*file.content);
+    if (sha.Hex() != file.sha256)
+      FailDamagedRecipe(database, fmt::format("its copy of {} does not match its checksum", file.name));
+  }
+  return files;
 }
 
 // Stages and arms are counted from 0 without gaps, arms stage by stage: everything else indexes by them.
 RunLayout ReadLayout(Connection& database) {
   constexpr std::int64_t kMaxMissions = 10'000'000;
   RunLayout layout;
-  layout.name = RecipeValue(database, "sweep");
-  layout.seed = Seed(database);
+  layout.name = NeededRecipeValue(database, "sweep");
+  const std::string seed = NeededRecipeValue(database, "seed");
+  const auto [end, error] = std::from_chars(seed.data(), seed.data() + seed.size(), layout.seed);
+  if (error != std::errc() || end != seed.data() + seed.size())
+    FailDamagedRecipe(database, fmt::format("its seed is '{}'", seed));
   Statement stages(database, "SELECT name, missions, stage FROM stages ORDER BY stage");
   while (stages.Step()) {
     if (stages.Int(2) != std::ssize(layout.stages) || stages.Int(1) < 0 || stages.Int(1) > kMaxMissions)
-      Damaged(database, fmt::format("its stage {} of {} missions", stages.Int(2), stages.Int(1)));
+      FailDamagedRecipe(database, fmt::format("its stage {} of {} missions", stages.Int(2), stages.Int(1)));
     layout.stages.push_back({stages.Text(0), stages.Int(1), {}});
   }
   Statement runs(database, "SELECT stage, name, first_scenario, arm, run FROM runs ORDER BY run");
@@ -143,20 +219,24 @@ RunLayout ReadLayout(Connection& database) {
     const bool known = stage >= last_stage && stage < std::ssize(layout.stages);
     if (!known || runs.Int(4) != run++ || runs.Int(3) != std::ssize(layout.stages[stage].arms) ||
         first_scenario < 0 || first_scenario > std::numeric_limits<std::uint32_t>::max())
-      Damaged(database, fmt::format("its arm {} of stage {}", runs.Int(3), stage));
+      FailDamagedRecipe(database, fmt::format("its arm {} of stage {}", runs.Int(3), stage));
     layout.stages[stage].arms.push_back({runs.Text(1), first_scenario});
     last_stage = stage;
   }
   return layout;
 }
 
-std::vector<RunId> ReadStored(Connection& database) {
-  Statement select(database,
-                   "SELECT stage, arm, mission FROM missions JOIN runs USING (run) ORDER BY run, mission");
+std::vector<RunId> ReadStored(Connection& database, const RunLayout& layout) {
+  Statement select(database, "SELECT run, mission FROM missions ORDER BY run, mission");
   std::vector<RunId> stored;
-  while (select.Step())
-    stored.push_back(
-        {static_cast<int>(select.Int(0)), static_cast<int>(select.Int(1)), static_cast<int>(select.Int(2))});
+  while (select.Step()) {
+    const std::optional<RunId> id = layout.Place(select.Int(0), select.Int(1));
+    if (!id)
+      throw UserError(DamageText(
+          database.file(), {select.Int(0), select.Int(1), layout.DescribeKeys(select.Int(0), select.Int(1)),
+                            "the plan has no such mission"}));
+    stored.push_back(*id);
+  }
   return stored;
 }
 

@@ -1,16 +1,24 @@
 // The tables of DIR/results.sqlite, and how a file is recognised.
 //
-//   recipe         key, value: sweep, seed, plan, code_version     identity: see recipe.h
-//   worlds         file, fingerprint (of world files and of detectors)
-//   stages, runs   the layout; a run is one arm of one stage
-//   missions       run, mission, every column of MissionRecord
-//   timesteps      run, mission, every column of TimestepRecord (k first)
-//   failures       missions that threw, with scenario, seed and message; flown again by the next session
-//   sessions       who wrote, when and with what (session_notes): in no digest
-//   timings        wall time of each mission and its session: in no digest
+//   recipe          key, value: sweep, seed, plan, and a checksum over all tables down to runs
+//   code            subsystem, identity: see recipe.h
+//   inputs          name, fingerprint (of worlds and of detectors)
+//   files, places   the content of every file that missions read, where it is small enough; what the plan calls it
+//   stages, runs    the layout; a run is one arm of one stage
+//   networks        every network that flew, as a model file with its checksum, by the hash of what it computes
+//   flown_networks  which of them an arm asks, by training seed and agent
+//   missions        run, mission, checksum, steps_checksum (checksums.h), every column of MissionRecord
+//   timesteps       run, mission, every column of TimestepRecord (k first)
+//   failures        missions that threw, with scenario, seed and message; flown again by the next session
+//   sessions        who wrote, when and with what (session_notes): in no digest
+//   timings         wall time of each mission and its session: in no digest
 //
 // missions and timesteps are clustered by their keys (WITHOUT ROWID), so that every reader gets the canonical
 // order without sorting, whatever the order of arrival.
+//
+// Formats: 1 had no checksums, code, files and networks; its recipe had one code_version and its inputs were called
+// worlds. It is read, but not continued. Within a format, columns may be added to missions and timesteps: a file that
+// lacks one is read with the field's initial value in its place.
 #pragma once
 
 #include <string>
@@ -24,19 +32,27 @@ namespace ed3r {
 
 inline constexpr char kResultsFile[] = "results.sqlite";
 // Raise it when a table other than missions and timesteps changes; their columns are compared by name.
-inline constexpr int kSchemaVersion = 1;
+inline constexpr int kSchemaVersion = 2;
 
 enum class FileKind { kEmpty, kStore };
 
+enum class FileUse { kRead, kWrite };
+
 // kEmpty: a database without any table, as a run leaves it that was killed at its very start. UserError when
-// the file is something else, damaged, or written by another version of the engine.
-FileKind CheckFile(Connection& database);
+// the file is something else, damaged, or written by a version of the engine that this one cannot read (or, for
+// kWrite, not continue).
+FileKind CheckFile(Connection& database, FileUse use);
 
 // Creates the tables and writes the recipe. Call it in a transaction.
 void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& layout);
 
-Recipe ReadRecipe(Connection& database);  // without notes: those belong to sessions
+// Adds identities of code to those that the file knows.
+void AddCode(Connection& database, const CodeIdentities& code);
+
+Recipe ReadRecipe(Connection& database);  // without notes and files: notes belong to sessions
+std::vector<InputFile> ReadFiles(Connection& database);
 RunLayout ReadLayout(Connection& database);
-std::vector<RunId> ReadStored(Connection& database);  // finished missions in plan order
+// Finished missions in plan order. UserError for one that is not in the plan.
+std::vector<RunId> ReadStored(Connection& database, const RunLayout& layout);
 
 }  // namespace ed3r

@@ -133,6 +133,16 @@ void Statement::Bind(int parameter, std::string_view value) {
     connection_.Fail();
 }
 
+void Statement::BindBlob(int parameter, std::string_view bytes) {
+  if (sqlite3_bind_blob64(statement_.get(), parameter + 1, bytes.data(), bytes.size(), SQLITE_TRANSIENT) !=
+      SQLITE_OK)
+    connection_.Fail();
+}
+
+void Statement::BindNull(int parameter) {
+  if (sqlite3_bind_null(statement_.get(), parameter + 1) != SQLITE_OK) connection_.Fail();
+}
+
 bool Statement::Step() {
   const int status = sqlite3_step(statement_.get());
   if (status == SQLITE_ROW) return true;
@@ -164,6 +174,14 @@ std::string Statement::Text(int column) const {
     throw UserError(fmt::format("{}: the file is damaged (a text that is not UTF-8)", connection_.file()));
   return value;
 }
+
+std::string Statement::Blob(int column) const {
+  const void* bytes = sqlite3_column_blob(statement_.get(), column);
+  const int size = sqlite3_column_bytes(statement_.get(), column);
+  return bytes ? std::string(static_cast<const char*>(bytes), static_cast<std::size_t>(size)) : "";
+}
+
+int Statement::Columns() const { return sqlite3_column_count(statement_.get()); }
 
 bool Statement::IsNull(int column) const {
   return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;

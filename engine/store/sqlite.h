@@ -55,6 +55,8 @@ class Statement {
   void Bind(int parameter, std::int64_t value);
   void Bind(int parameter, double value);  // NaN becomes NULL
   void Bind(int parameter, std::string_view value);
+  void BindBlob(int parameter, std::string_view bytes);
+  void BindNull(int parameter);
 
   bool Step();   // true: a row is there; false: the end
   void Reset();  // ready for the next Bind and Step; keeps the bindings
@@ -71,6 +73,8 @@ class Statement {
   std::int64_t Int(int column) const;
   double Real(int column) const;  // NULL becomes NaN
   std::string Text(int column) const;
+  std::string Blob(int column) const;
+  int Columns() const;
   bool IsNull(int column) const;
 
  private:

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "engine/core/check.h"
+#include "engine/store/damage.h"
 #include "engine/store/records.h"
 #include "engine/store/schema.h"
 #include "engine/store/sqlite.h"
@@ -32,8 +33,8 @@ std::string HostName() {
 
 class SqliteStore final : public ResultStore {
  public:
-  SqliteStore(const std::string& dir, const Recipe& recipe, const RunLayout& layout)
-      : layout_(layout), file_(dir, recipe, layout), writer_(file_.database()) {
+  SqliteStore(const std::string& dir, const Recipe& recipe, const RunLayout& layout, OtherCode other_code)
+      : layout_(layout), file_(dir, recipe, layout, other_code), writer_(file_.database(), layout_) {
     BeginSession(recipe);
   }
 
@@ -48,20 +49,32 @@ class SqliteStore final : public ResultStore {
 
   const RunLayout& Layout() const override { return layout_; }
 
-  std::vector<RunId> Stored() const override { return ReadStored(file_.database()); }
+  std::vector<RunId> Stored() const override { return ReadStored(file_.database(), layout_); }
 
   void Put(const RunId& id, const MissionRecord& record, double wall_s) override {
     CheckStorable(record);
-    const std::int64_t run = layout_.RunIndex(id);
+    ED3R_CHECK(layout_.Contains(id), fmt::format("{}/{}/{}", id.stage, id.arm, id.mission));
     InGroup([&] {
-      writer_.InsertMission(run, id.mission, record);
-      writer_.InsertTiming(run, id.mission, session_, wall_s);
+      writer_.InsertMission(id, record);
+      writer_.InsertTiming(id, session_, wall_s);
     });
   }
 
   void PutFailure(const RunId& id, const std::string& message) override {
-    const std::int64_t run = layout_.RunIndex(id);
-    InGroup([&] { writer_.InsertFailure(run, id.mission, layout_.Scenario(id), layout_.seed, message); });
+    const std::int64_t scenario = layout_.Scenario(id);  // throws before the group is touched
+    InGroup([&] { writer_.InsertFailure(id, scenario, layout_.seed, message); });
+  }
+
+  std::vector<DamagedMission> FindDamage() override { return ed3r::FindDamage(file_.database(), layout_); }
+
+  void Remove(const std::vector<DamagedMission>& missions) override {
+    InGroup([&] { RemoveMissions(file_.database(), missions); });
+    Commit();
+  }
+
+  void PutNetworks(const FlownNetworks& networks) override {
+    InGroup([&] { ed3r::PutNetworks(file_.database(), layout_, networks); });
+    Commit();
   }
 
   void Commit() override {
@@ -108,8 +121,8 @@ class SqliteStore final : public ResultStore {
 }  // namespace
 
 std::unique_ptr<ResultStore> ResultStore::Open(const std::string& dir, const Recipe& recipe,
-                                               const RunLayout& layout) {
-  return std::make_unique<SqliteStore>(dir, recipe, layout);
+                                               const RunLayout& layout, OtherCode other_code) {
+  return std::make_unique<SqliteStore>(dir, recipe, layout, other_code);
 }
 
 }  // namespace ed3r

@@ -13,7 +13,9 @@
 
 #include "engine/mission/record.h"
 #include "engine/store/layout.h"
+#include "engine/store/networks.h"
 #include "engine/store/recipe.h"
+#include "engine/store/records.h"
 
 namespace ed3r {
 
@@ -21,14 +23,16 @@ class ResultStore {
  public:
   // Makes DIR and the file when missing, continues it when there; begins a session with recipe.notes.
   static std::unique_ptr<ResultStore> Open(const std::string& dir, const Recipe& recipe,
-                                           const RunLayout& layout);
+                                           const RunLayout& layout,
+                                           OtherCode other_code = OtherCode::kRefuse);
 
   // Ends the session. What was not committed is dropped.
   virtual ~ResultStore() = default;
 
   virtual const RunLayout& Layout() const = 0;
 
-  // Finished missions in plan order. Failed ones are not among them: they are flown again.
+  // Finished missions in plan order. Failed ones are not among them: they are flown again. UserError when one is not in
+  // the plan.
   virtual std::vector<RunId> Stored() const = 0;
 
   // A mission is stored once; wall_s is kept apart from the results. A record whose timesteps are not
@@ -38,6 +42,14 @@ class ResultStore {
   // A mission that threw. Its scenario and seed are filled in from the layout; replaced by a later failure,
   // removed by a later Put.
   virtual void PutFailure(const RunId& id, const std::string& message) = 0;
+
+  // Missions that do not match their checksums or are not in the plan (damage.h); and out with them, so that they are
+  // flown again. Call them before anything is put.
+  virtual std::vector<DamagedMission> FindDamage() = 0;
+  virtual void Remove(const std::vector<DamagedMission>& missions) = 0;
+
+  // The networks of the arms that fly next. UserError when one of them has flown with another.
+  virtual void PutNetworks(const FlownNetworks& networks) = 0;
 
   virtual void Commit() = 0;  // everything put so far survives a kill
 };

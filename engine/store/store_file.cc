@@ -45,28 +45,37 @@ DirectoryLock Lock(const std::string& dir) {
   throw UserError(fmt::format("{}: another ed3r is writing into this directory{}", dir, Holder(dir)));
 }
 
-void CheckSameRun(Connection& database, const std::string& dir, const Recipe& recipe,
-                  const RunLayout& layout) {
-  if (const auto difference = Difference(ReadRecipe(database), recipe))
+void CheckSameRun(Connection& database, const std::string& dir, const Recipe& recipe, const RunLayout& layout,
+                  OtherCode other_code) {
+  const Recipe there = ReadRecipe(database);
+  if (const auto difference = Difference(there, recipe))
     throw UserError(
         fmt::format("{}: holds results of another recipe: {}; give another --out", dir, *difference));
+  const auto code = CodeDifference(there.code, recipe.code);
+  if (code && other_code == OtherCode::kRefuse)
+    throw UserError(
+        fmt::format("{}: holds results of another recipe: {}; give another --out, or --accept-mixed to "
+                    "continue it with other code",
+                    dir, *code));
   if (!ReadLayout(database).SameMissions(layout))
     throw UserError(fmt::format("{}: holds results of other stages, arms or seed; give another --out", dir));
 }
 
 }  // namespace
 
-StoreFile::StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout) : dir_(dir) {
+StoreFile::StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout,
+                     OtherCode other_code)
+    : dir_(dir) {
   created_dir_ = MakeDirectory(dir);
   lock_ = std::make_unique<DirectoryLock>(Lock(dir));
   created_ = !fs::exists(FileIn(dir));
   database_ = std::make_unique<Connection>(FileIn(dir), Connection::Access::kCreate);
-  OpenOrCreate(recipe, layout);
+  OpenOrCreate(recipe, layout, other_code);
 }
 
-void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout) {
-  const bool empty = CheckFile(*database_) == FileKind::kEmpty;
-  if (!empty) CheckSameRun(*database_, dir_, recipe, layout);
+void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code) {
+  const bool empty = CheckFile(*database_, FileUse::kWrite) == FileKind::kEmpty;
+  if (!empty) CheckSameRun(*database_, dir_, recipe, layout, other_code);
   // Only now: a refused file stays as it was.
   if (empty) database_->Execute(fmt::format("PRAGMA page_size = {}", kPageBytes));
   database_->Execute("PRAGMA journal_mode = WAL");
@@ -74,9 +83,8 @@ void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout) {
   database_->Execute("PRAGMA synchronous = NORMAL");
   database_->Execute(fmt::format("PRAGMA cache_size = -{}", kCacheKib));
   database_->Execute("PRAGMA secure_delete = OFF");  // Debian's default wipes freed space
-  if (!empty) return;
   Transaction transaction(*database_, Transaction::Kind::kWrite);
-  CreateTables(*database_, recipe, layout);
+  empty ? CreateTables(*database_, recipe, layout) : AddCode(*database_, recipe.code);
   transaction.Commit();
 }
 

@@ -16,8 +16,10 @@ namespace ed3r {
 class StoreFile {
  public:
   // Makes DIR and the file when missing. UserError, and nothing changed, when the file holds the results of
-  // another recipe or layout, is not a store, or has another writer.
-  StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout);
+  // another recipe or layout, is not a store, or has another writer; results of other code are taken on and their
+  // recipe then names both where `other_code` accepts it.
+  StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout,
+            OtherCode other_code = OtherCode::kRefuse);
   ~StoreFile();
   StoreFile(const StoreFile&) = delete;
   StoreFile& operator=(const StoreFile&) = delete;
@@ -30,7 +32,7 @@ class StoreFile {
   void Discard();
 
  private:
-  void OpenOrCreate(const Recipe& recipe, const RunLayout& layout);
+  void OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code);
 
   std::string dir_;
   bool created_dir_ = false;

@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::string_view kWorldKey = "mission.world";
 constexpr std::string_view kDetectorKeys[] = {"perception.detector.full", "perception.detector.quantized"};
-constexpr std::string_view kBuiltIn = "builtin";  // a detector that is no file
 constexpr std::string_view kAirframeKey = "robot";
 
 bool IsDetector(std::string_view key) {
@@ -53,7 +52,7 @@ Setting SettingReader::Read(const std::string& written_key, const std::string& k
   if (check_) {
     if (const std::string problem = check_(setting.key, text); !problem.empty()) FailAt(at, problem);
   }
-  if (setting.key == kWorldKey || (IsDetector(setting.key) && text != kBuiltIn)) {
+  if (setting.key == kWorldKey || (IsDetector(setting.key) && text != kBuiltInDetector)) {
     ResolveFile(setting);
   } else {
     setting.text = setting.canonical = GetParameter(scratch, setting.key);  // 1e0, 1.0 and 1 are one value

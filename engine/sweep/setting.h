@@ -32,6 +32,8 @@ std::string FolderOf(const std::string& file);
 // A path as it can be opened, when it is written in a file of this folder.
 std::string PathFrom(const std::string& folder, const std::string& written);
 
+constexpr char kBuiltInDetector[] = "builtin";  // a detector that is no file
+
 // Whether the value of this parameter is a path: a world, or a detector that is not built in.
 bool NamesAFile(std::string_view key);
 

@@ -3,22 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include "engine/core/check.h"
+#include "engine/store/restored_files.h"
+#include "engine/sweep/plan_text.h"
 
 namespace ed3r {
 namespace {
-
-std::vector<std::string> SplitList(const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream list(text);
-  for (std::string part; std::getline(list, part, ',');) parts.push_back(part);
-  return parts;
-}
 
 // Lower is tried first.
 int Rank(const ArmPlan& plan) { return plan.warmup ? 2 : plan.name == "ed3r-75" ? 0 : 1; }
@@ -62,33 +55,18 @@ std::string ArmPlan::Setting(const std::string& key) const {
 }
 
 std::vector<ArmPlan> ReadArmPlans(std::string_view plan_text) {
-  std::vector<ArmPlan> plans;
+  const WrittenPlan written = ReadPlanText(plan_text);
   std::set<std::string> warmups;
-  std::string stage, kind;
-  std::optional<Precision> precision;
-  std::istringstream lines{std::string(plan_text)};
-  for (std::string line; std::getline(lines, line);) {
-    const auto equals = line.find('=');
-    if (equals == std::string::npos) continue;
-    const std::string key = line.substr(0, equals), value = line.substr(equals + 1);
-    if (key == "stage") {
-      stage = value;
-      precision.reset();
-    } else if (key == "precision") {
-      std::istringstream words(value);
-      words >> precision.emplace().metric >> precision->half_width >> precision->every;
-    } else if (key == "kind") {
-      kind = value;
-    } else if (key == "after") {
-      if (kind == "train")
-        for (const std::string& name : SplitList(value)) warmups.insert(name);
-    } else if (key == "arm") {
-      plans.push_back({.stage = stage, .name = value, .settings = {}, .precision = precision});
-    } else if (key.find('.') != std::string::npos && !plans.empty()) {
-      plans.back().settings[key] = value;
-    }
-  }
-  for (ArmPlan& plan : plans) plan.warmup = warmups.contains(plan.stage);
+  for (const WrittenPlan::Stage& stage : written.stages)
+    if (stage.kind == StageKind::kTrain) warmups.insert(stage.after.begin(), stage.after.end());
+  std::vector<ArmPlan> plans;
+  for (const WrittenPlan::Stage& stage : written.stages)
+    for (const WrittenPlan::Arm& arm : stage.arms)
+      plans.push_back({.stage = stage.name,
+                       .name = arm.name,
+                       .warmup = warmups.contains(stage.name),
+                       .settings = arm.settings,
+                       .precision = stage.precision});
   return plans;
 }
 
@@ -109,18 +87,14 @@ std::vector<ShownMission> PickMissions(ResultReader& reader, std::span<const Arm
 }
 
 FoundScene FindScene(ResultReader& reader, const std::string& world) {
-  const std::vector<Session> sessions = reader.Sessions();
-  if (sessions.empty() || !sessions.back().notes.contains("sweep file"))
-    return {nullptr, "no session tells where the sweep file lay"};
   const auto& worlds = reader.StoredRecipe().inputs;
   const auto flown = worlds.find(world);
   if (flown == worlds.end()) return {nullptr, fmt::format("the recipe does not know the world '{}'", world)};
-  const std::filesystem::path file =
-      std::filesystem::path(sessions.back().notes.at("sweep file")).parent_path() / world;
   try {
-    std::shared_ptr<const Scene> scene = Scene::Load(file.lexically_normal().string());
+    const RestoredFiles files(reader);
+    std::shared_ptr<const Scene> scene = Scene::Load(files.PathOf(world));
     if (scene->Fingerprint() != flown->second)
-      return {nullptr, fmt::format("{} has changed since it was flown in", file.lexically_normal().string())};
+      return {nullptr, fmt::format("{} has changed since it was flown in", world)};
     return {scene, ""};
   } catch (const UserError& error) {
     return {nullptr, error.what()};

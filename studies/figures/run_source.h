@@ -47,8 +47,8 @@ struct FoundScene {
   std::string why_not;  // half a sentence, where there is none
 };
 
-// The world `world` (as the plan names it) of the run, if its file is still where the run's last session found it and
-// makes the scene that was flown.
+// The world `world` (as the plan names it) of the run, from the files that the run keeps, if they make the scene that was
+// flown.
 FoundScene FindScene(ResultReader& reader, const std::string& world);
 
 }  // namespace ed3r

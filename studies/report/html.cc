@@ -52,8 +52,9 @@ std::string WhatWasRun(const Provenance& p) {
          Fact("flown time",
               fmt::format("{:.1f} simulated hours in {:.2f} core hours", p.simulated_h, p.wall_h)) +
          Fact("worlds", worlds) +
-         Fact("code", fmt::format("commit {}, sources {}", HtmlText(p.commit.empty() ? "unknown" : p.commit),
-                                  Code(p.code_version))) +
+         Fact("code", fmt::format("commit {}, sources {}{}",
+                                  HtmlText(p.commit.empty() ? "unknown" : p.commit), Code(p.code_version),
+                                  p.mixed_code ? "; <b>mixed: several versions flew this run</b>" : "")) +
          Fact("machine", machine) + Fact("when", HtmlText(when)) +
          Fact("digest of the results", Code(p.digest)) + "</dl></section>\n";
 }

@@ -39,6 +39,7 @@ RunResults LoadRun(const std::string& dir) {
   ResultReader reader(dir);
   const RunLayout& layout = reader.Layout();
   RunResults results{layout.name, {}};
+  if (MixedCode(reader.StoredRecipe().code)) results.mixed_code = CodeText(reader.StoredRecipe().code);
   const std::vector<ArmStatus> status = reader.Status();
   const std::vector<ArmPlan> plans = ReadArmPlans(reader.StoredRecipe().plan_text);
   for (int s = 0; s < static_cast<int>(layout.stages.size()); ++s) {

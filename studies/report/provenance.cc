@@ -43,7 +43,8 @@ Provenance ReadProvenance(const std::string& dir) {
   provenance.dir = dir;
   provenance.sweep = reader.Layout().name;
   provenance.seed = std::to_string(reader.Layout().seed);
-  provenance.code_version = reader.StoredRecipe().code_version;
+  provenance.code_version = CodeText(reader.StoredRecipe().code);
+  provenance.mixed_code = MixedCode(reader.StoredRecipe().code);
   provenance.inputs = reader.StoredRecipe().inputs;
   const std::vector<Session> all = reader.Sessions();
   const bool any_flew = std::any_of(all.begin(), all.end(), Flew);

@@ -12,7 +12,8 @@ struct Provenance {
   std::string dir, sweep;
   std::string sweep_file, command;  // of the last of `sessions`; "" where it left no notes
   std::string seed;
-  std::string code_version;  // hash of the sources that results depend on
+  std::string code_version;  // identity of the code that decided results, by subsystem
+  bool mixed_code = false;   // several versions of one subsystem flew
   std::string commit;        // of the last of `sessions`; "unknown" outside a checkout
   std::string digest;        // of what is stored
   std::int64_t planned = 0, stored = 0, failed = 0;

@@ -27,6 +27,7 @@ void WriteTable(const StudyTable& table, const fs::path& folder) {
 Report MakeReport(const RunResults& results) {
   Report report;
   report.name = results.name;
+  report.mixed_code = results.mixed_code;
   report.variants = CompareVariants(results.arms);
   const bool variants = !report.variants.variants.empty();
   const std::vector<ArmData> first =
@@ -49,6 +50,7 @@ Report MakeReport(const RunResults& results) {
 
 std::string ReportText(const Report& report) {
   std::string text = report.name;
+  if (!report.mixed_code.empty()) text += fmt::format(", MIXED CODE (--accept-mixed): {}", report.mixed_code);
   if (report.arms.empty()) return text + "\n\nNo missions.\n";
   if (report.claims.networks > 1)
     text += fmt::format(", {} trained networks of each kind", report.claims.networks);
@@ -68,6 +70,7 @@ std::string ReportText(const Report& report) {
 
 nlohmann::ordered_json ReportJson(const Report& report) {
   nlohmann::ordered_json json = {{"name", report.name}};
+  if (!report.mixed_code.empty()) json["mixed_code"] = report.mixed_code;
   json.update(ResultJson(report.arms, PaperClaims()));
   json["generalisation"] = GeneralisationJson(report.generalisation);
   json["claims"] = VerdictJson(report.claims);

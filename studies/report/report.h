@@ -21,10 +21,13 @@ namespace ed3r {
 struct RunResults {
   std::string name;  // of the sweep
   std::vector<ArmData> arms;
+  // The identities of the code, where several versions of it flew the run (CodeText); "" where one did.
+  std::string mixed_code = {};
 };
 
 struct Report {
   std::string name;
+  std::string mixed_code;  // as in RunResults
   std::vector<ArmMetrics> arms;
   // What tables and verdicts tell: all arms, or those of the first variant where the study has variants.
   std::vector<ArmMetrics> told;

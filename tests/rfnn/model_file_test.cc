@@ -127,7 +127,7 @@ TEST_F(ModelFileTest, MessagesSayWhatIsWrong) {
   std::string other = bytes_;
   other[kVersionAt] = 9;
   WriteBytes(path_, other);
-  EXPECT_EQ(Refusal(path_), path_ + ": this model file has format version 9; this program reads version 1");
+  EXPECT_EQ(Refusal(path_), path_ + ": this model file has format version 9; this program reads version 2");
   WriteBytes(path_, "epoch,loss\n1,2\n");
   EXPECT_EQ(Refusal(path_), path_ + ": is not a model file");
   other = bytes_;
@@ -189,6 +189,35 @@ TEST(SealedFileTest, NumbersAreLittleEndian) {
   out.F32s(one);
   EXPECT_EQ(out.bytes(),
             std::string("\x04\x03\x02\x01\0\0\0\0\0\0\xf0\x3f\x01\0\0\0\0\0\0\0\0\0\x80\x3f", 24));
+}
+
+TEST_F(ModelFileTest, BytesAreTheFileAndTheHashIsOfWhatIsComputed) {
+  ModelData data = Complete(kTiny);
+  data.key = "of a training";
+  const Model model(kTiny, data);
+  WriteModel(path_, model);
+  EXPECT_EQ(ModelBytes(model), ReadBytes(path_));
+  const Model opened = OpenModel(ModelBytes(model), "kept", kTiny);
+  EXPECT_EQ(opened.data().weights, data.weights);
+  EXPECT_EQ(opened.data().key, "of a training");
+  EXPECT_EQ(ReadModel(path_, kTiny, "of a training").data().weights, data.weights);
+  EXPECT_EQ(
+      MessageOf<UserError>([&] { ReadModel(path_, kTiny, "of another training"); }),
+      path_ +
+          ": this model file holds the network of another training (of a training; wanted: of another train"
+          "); delete it to train anew");
+  EXPECT_EQ(MessageOf<UserError>([&] { OpenModel("x", "kept", kTiny); }), "kept: is not a model file");
+
+  const std::string hash = NetworkHash(model);
+  EXPECT_EQ(NetworkHash(opened), hash);
+  data.key = "of another training";
+  data.provenance.clear();
+  EXPECT_EQ(NetworkHash(Model(kTiny, data)), hash);
+  data.weights[1] += 1.0f;
+  EXPECT_NE(NetworkHash(Model(kTiny, data)), hash);
+  data.weights[1] = model.data().weights[1];
+  data.scaling.target_mean += 1.0;
+  EXPECT_NE(NetworkHash(Model(kTiny, data)), hash);
 }
 
 }  // namespace

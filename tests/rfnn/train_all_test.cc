@@ -1,5 +1,6 @@
 #include "engine/rfnn/train_all.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "engine/core/check.h"
@@ -60,6 +61,22 @@ TEST_F(TrainAllTest, NumberOfThreadsAndCacheDoNotChangeABit) {
     EXPECT_EQ(ReportJson(cached[i]->data().report), ReportJson(serial[i]->data().report));
     EXPECT_EQ(serial[i]->data().weights, Train(jobs_[i])->data().weights);
   }
+}
+
+TEST_F(TrainAllTest, AValidNetworkInAnothersPlaceIsRefused) {
+  TrainAll(jobs_, options_);
+  const std::string first = CachePath(options_.cache, jobs_[0]), second = CachePath(options_.cache, jobs_[1]);
+  std::filesystem::rename(first, folder_.File("kept"));
+  std::filesystem::rename(second, first);
+  std::filesystem::rename(folder_.File("kept"), second);
+  EXPECT_EQ(MessageOf<UserError>([&] { TrainAll(jobs_, options_); }),
+            fmt::format(
+                "{}: this model file holds the network of another training ({:.16}; wanted: {:.16}); delete "
+                "it to train anew",
+                first, TrainingKey(jobs_[1]), TrainingKey(jobs_[0])));
+  std::filesystem::remove(first);
+  std::filesystem::remove(second);
+  EXPECT_EQ(TrainAll(jobs_, options_)[0]->data().weights, Train(jobs_[0])->data().weights);
 }
 
 TEST_F(TrainAllTest, EqualJobsShareOneNetwork) {

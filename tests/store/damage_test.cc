@@ -71,7 +71,7 @@ TEST(DamageTest, OtherColumns) {
   const TempDir temp;
   WriteStore(temp / "run", {{0, 0, 0}});
   Sql(ResultsIn(temp / "run"), "ALTER TABLE timesteps RENAME COLUMN scs TO score");
-  ExpectRefused(temp / "run", "written by another version of ed3r (code 0123abcd)");
+  ExpectRefused(temp / "run", "written by another version of ed3r: this one does not know its column score");
 }
 
 TEST(DamageTest, ATruncatedFile) {

@@ -34,7 +34,7 @@ TEST(DigestTest, DependsOnResultsAlone) {
   EXPECT_EQ(DigestOfRun(order, 13, TestRecipe(), 1.0), digest) << "order";
   Recipe elsewhere = TestRecipe();
   elsewhere.notes = {{"simd", "scalar"}};
-  elsewhere.code_version = "another commit that flies the same";
+  elsewhere.code = {{"flight", {"another commit that flies the same"}}};
   EXPECT_EQ(DigestOfRun(order, 13, elsewhere, 1.0), digest) << "machine and code";
   order.pop_back();
   EXPECT_NE(DigestOfRun(order, 13, TestRecipe(), 1.0), digest) << "a mission is missing";
@@ -112,14 +112,17 @@ TEST(DigestTest, IsTheDocumentedFormat) {
     });
     return all;
   };
+  const auto sha256 = [](const std::string& bytes) {
+    Sha256 sha;
+    sha.Update(bytes);
+    return sha.Hex();
+  };
   const MissionRecord record = TestRecord({2, 1, 4});
-  std::string bytes = text("ed3r results 1") + text(names(MissionRecord{})) + text(names(TimestepRecord{}));
-  bytes += text("online") + text("ed3r-75") + number(4) + values(record);
-  bytes += number(static_cast<std::int64_t>(record.steps.size()));
-  for (const TimestepRecord& step : record.steps) bytes += values(step);
-  Sha256 sha;
-  sha.Update(bytes);
-  EXPECT_EQ(DigestOfDir(temp / "run"), sha.Hex());
+  std::string steps = text(names(TimestepRecord{})) + number(static_cast<std::int64_t>(record.steps.size()));
+  for (const TimestepRecord& step : record.steps) steps += values(step);
+  const std::string mission = text("online") + text("ed3r-75") + number(4) + text(names(MissionRecord{})) +
+                              values(record) + text(sha256(steps));
+  EXPECT_EQ(DigestOfDir(temp / "run"), sha256(text("ed3r results 2") + sha256(mission)));
   EXPECT_GT(record.steps.size(), 0u);
 }
 

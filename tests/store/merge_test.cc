@@ -99,10 +99,10 @@ TEST_F(MergeTest, AnotherRecipeIsRefused) {
     EXPECT_EQ(DigestOfDir(temp_ / name), digest);
   };
   Recipe code = TestRecipe(), plan = TestRecipe(), world = TestRecipe();
-  code.code_version = "ffff";
+  code.code["flight"] = {"ffff"};
   plan.plan_text += "x";
   world.inputs.begin()->second = "other";
-  refused("code", code, "the code is");
+  refused("code", code, "the code of flight is");
   refused("plan", plan, "the plan differs at its line 5");
   refused("world", world, "worlds/ridges.yaml is");
 }

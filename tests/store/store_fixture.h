@@ -50,7 +50,7 @@ inline std::string ResultsIn(const std::string& dir) {
 
 inline Recipe TestRecipe() {
   return {.plan_text = "name: test\nseed: 7\nstage online\n  mission.strategy: rbs\n",
-          .code_version = "0123abcd",
+          .code = {{"flight", {"0123abcd"}}, {"training", {"4567"}}},
           .inputs = {{"worlds/ridges.yaml", "fingerprint-1"}},
           .notes = {{"simd", "avx2"}, {"compiler", "gcc 12"}}};
 }

@@ -122,8 +122,8 @@ TEST(StoreTest, AnotherRecipeIsRefusedAndNothingChanges) {
   EXPECT_TRUE(Contains(plan, "line 2: \"seed: 7\" there, \"seed: 8\" here"));
   EXPECT_TRUE(Contains(error([](Recipe& r, RunLayout&) { r.plan_text += "more\n"; }),
                        "line 5: nothing more there, \"more\" here"));
-  EXPECT_TRUE(Contains(error([](Recipe& r, RunLayout&) { r.code_version = "4567"; }),
-                       "the code is 0123abcd there and 4567 here"));
+  EXPECT_TRUE(Contains(error([](Recipe& r, RunLayout&) { r.code["flight"] = {"4567"}; }),
+                       "the code of flight is 0123abcd there and 4567 here"));
   EXPECT_TRUE(Contains(error([](Recipe& r, RunLayout&) { r.inputs["worlds/ridges.yaml"] = "other"; }),
                        "worlds/ridges.yaml is fingerprint-1 there and other here"));
   EXPECT_TRUE(Contains(error([](Recipe& r, RunLayout&) { r.inputs.clear(); }), "used there, but not here"));
@@ -150,7 +150,7 @@ TEST(StoreTest, RecipeAndSessionsAreInTheFile) {
 
   ResultReader reader(temp / "run");
   EXPECT_EQ(reader.StoredRecipe().plan_text, recipe.plan_text);
-  EXPECT_EQ(reader.StoredRecipe().code_version, recipe.code_version);
+  EXPECT_EQ(reader.StoredRecipe().code, recipe.code);
   EXPECT_EQ(reader.StoredRecipe().inputs, recipe.inputs);
   EXPECT_EQ(reader.Layout().name, "test");
   EXPECT_TRUE(reader.Layout().SameMissions(layout));

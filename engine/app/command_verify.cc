@@ -1,0 +1,138 @@
+// Whether a run directory can be believed, and where two of them part: verify, diff.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "engine/app/commands.h"
+#include "engine/app/words.h"
+#include "engine/core/check.h"
+#include "engine/schedule/training_stage.h"
+#include "engine/store/difference.h"
+#include "engine/store/reader.h"
+#include "engine/store/schema.h"
+
+namespace ed3r {
+namespace {
+
+struct Verification {
+  std::int64_t missions = 0;
+  std::vector<DamagedMission> damage;
+  std::vector<std::string> other;  // lines on what is not a mission
+};
+
+Verification Verify(const std::string& dir) {
+  Verification found;
+  try {
+    ResultReader reader(dir);
+    found.missions = reader.CountMissions();
+    found.damage = reader.FindDamage();
+    reader.Files();
+    NetworkShelf::From(reader.Networks(), dir);
+  } catch (const UserError& error) {
+    // What is not there is bad input; what is there and cannot be read is what was asked.
+    if (!std::filesystem::exists(std::filesystem::path(dir) / kResultsFile)) throw;
+    found.other.emplace_back(error.what());
+  } catch (const InternalError& error) {  // SQLite's own tables are not what they should be
+    found.other.emplace_back(error.what());
+  }
+  return found;
+}
+
+int PrintVerification(const std::string& dir, const Verification& found, bool json) {
+  const bool whole = found.damage.empty() && found.other.empty();
+  if (json) {
+    nlohmann::ordered_json object = {{"whole", whole},
+                                     {"missions", found.missions},
+                                     {"damaged", nlohmann::ordered_json::array()},
+                                     {"other", found.other}};
+    for (const DamagedMission& damage : found.damage)
+      object["damaged"].push_back({{"mission", damage.name}, {"problem", damage.what}});
+    fmt::print("{}\n", object.dump(2));
+    return whole ? kDone : kFailedInside;
+  }
+  for (const DamagedMission& damage : found.damage) fmt::print("{}: {}\n", damage.name, damage.what);
+  for (const std::string& line : found.other) fmt::print("{}\n", line);
+  if (whole)
+    fmt::print("{}: {} whole\n", dir, Counted(found.missions, "mission"));
+  else if (!found.damage.empty())
+    fmt::print("{}: {} damaged; 'ed3r run SWEEP --repair' deletes them and flies them again\n", dir,
+               Counted(static_cast<std::int64_t>(found.damage.size()), "mission"));
+  return whole ? kDone : kFailedInside;
+}
+
+int PrintDifference(const RunDifference& difference, bool json) {
+  const auto& first = difference.first;
+  if (json) {
+    nlohmann::ordered_json object = {{"identical", !first.has_value()},
+                                     {"compared", difference.compared},
+                                     {"differing", difference.differing},
+                                     {"only_in_first", difference.only_here},
+                                     {"only_in_second", difference.only_there}};
+    if (first)
+      object["first"] = {{"mission", first->mission},
+                         {"timestep", first->timestep},
+                         {"quantity", first->quantity},
+                         {"first", first->here},
+                         {"second", first->there}};
+    fmt::print("{}\n", object.dump(2));
+    return first ? kFailedInside : kDone;
+  }
+  if (!first) {
+    fmt::print("identical: {}\n", Counted(difference.compared, "mission"));
+    return kDone;
+  }
+  if (first->quantity == "mission")
+    fmt::print("{}: only the {} run has it\n", first->mission, first->here.empty() ? "second" : "first");
+  else if (first->quantity == "timestep")
+    fmt::print("{}: timestep {}: only the {} run has it\n", first->mission, first->timestep,
+               first->here.empty() ? "second" : "first");
+  else
+    fmt::print("{}{}: {} is {} in the first and {} in the second\n", first->mission,
+               first->timestep > 0 ? fmt::format(", timestep {}", first->timestep) : "", first->quantity,
+               first->here, first->there);
+  fmt::print("{} compared, {} differ; {} only in the first, {} only in the second\n",
+             Counted(difference.compared, "mission"), difference.differing, difference.only_here,
+             difference.only_there);
+  return kFailedInside;
+}
+
+}  // namespace
+
+Command AddVerify(CLI::App& program) {
+  struct Options {
+    std::string dir;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* parser = program.add_subcommand(
+      "verify",
+      "Compares everything stored with its checksums and names what is damaged; exit 1 where anything is");
+  parser->add_option("DIR", options->dir, "Run directory")->required();
+  parser->add_flag("--json", options->json, "Print JSON");
+  return {parser, [options] { return PrintVerification(options->dir, Verify(options->dir), options->json); }};
+}
+
+Command AddDiff(CLI::App& program) {
+  struct Options {
+    std::string a, b;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* parser = program.add_subcommand(
+      "diff", "The first mission, timestep and quantity in which two runs differ; exit 1 where they do");
+  parser->add_option("A", options->a, "Run directory")->required();
+  parser->add_option("B", options->b, "Run directory")->required();
+  parser->add_flag("--json", options->json, "Print JSON");
+  return {parser, [options] {
+            ResultReader a(options->a), b(options->b);
+            const RunDifference difference = DiffRuns(a, b);
+            if (difference.compared + difference.only_here + difference.only_there == 0)
+              throw UserError(
+                  fmt::format("{} and {}: no mission of an arm that both have", options->a, options->b));
+            return PrintDifference(difference, options->json);
+          }};
+}
+
+}  // namespace ed3r

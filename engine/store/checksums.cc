@@ -1,0 +1,66 @@
+#include "engine/store/checksums.h"
+
+#include <fmt/format.h>
+
+#include "engine/core/check.h"
+#include "engine/core/sha256.h"
+
+namespace ed3r {
+namespace {
+
+std::vector<std::string> ColumnsIn(Connection& database, const std::string& table) {
+  Statement info(database, fmt::format("SELECT name FROM pragma_table_info('{}') WHERE name NOT IN ('run', "
+                                       "'mission', 'checksum', 'steps_checksum') ORDER BY cid",
+                                       table));
+  std::vector<std::string> names;
+  while (info.Step()) names.push_back(info.Text(0));
+  return names;
+}
+
+std::string Sha256Of(std::string_view bytes) {
+  Sha256 sha;
+  sha.Update(bytes);
+  return sha.Hex();
+}
+
+}  // namespace
+
+RecordTables::RecordTables(Connection& database)
+    : checked_(database.Int("SELECT count(*) FROM pragma_table_info('missions') WHERE name = 'checksum'") >
+               0),
+      missions_(ColumnsIn(database, "missions")),
+      timesteps_(ColumnsIn(database, "timesteps")) {
+  for (const std::string& unknown : {missions_.unknown(), timesteps_.unknown()})
+    if (!unknown.empty())
+      throw UserError(
+          fmt::format("{}: written by another version of ed3r: this one does not know its column {}",
+                      database.file(), unknown));
+}
+
+std::string RecordTables::StepsChecksum(const std::vector<TimestepRecord>& steps) const {
+  std::string bytes;
+  AppendText(bytes, timesteps_.names());
+  AppendInt(bytes, static_cast<std::int64_t>(steps.size()));
+  for (const TimestepRecord& step : steps) timesteps_.Append(bytes, step);
+  return Sha256Of(bytes);
+}
+
+std::string RecordTables::MissionChecksum(const RunLayout& layout, const RunId& id,
+                                          const MissionRecord& record, const std::string& steps) const {
+  const RunLayout::Stage& stage = layout.stages.at(static_cast<std::size_t>(id.stage));
+  std::string bytes;
+  AppendText(bytes, stage.name);
+  AppendText(bytes, stage.arms.at(static_cast<std::size_t>(id.arm)).name);
+  AppendInt(bytes, id.mission);
+  AppendText(bytes, missions_.names());
+  missions_.Append(bytes, record);
+  AppendText(bytes, steps);
+  return Sha256Of(bytes);
+}
+
+Checksums RecordTables::Of(const RunLayout& layout, const RunId& id, const MissionRecord& record) const {
+  const std::string steps = StepsChecksum(record.steps);
+  return {MissionChecksum(layout, id, record, steps), steps};
+}
+
+}  // namespace ed3r

@@ -1,0 +1,46 @@
+// The checksum that stands beside each stored mission: whatever reads the mission compares it.
+//
+// Two of them, so that readers of missions alone need not read timesteps: one over the timesteps, and one over the
+// mission's place (stage, arm, number), its columns and the first. SHA-256 in hexadecimal.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/mission/record.h"
+#include "engine/store/columns.h"
+#include "engine/store/layout.h"
+#include "engine/store/sqlite.h"
+
+namespace ed3r {
+
+struct Checksums {
+  std::string mission, steps;
+  bool operator==(const Checksums&) const = default;
+};
+
+// The tables missions and timesteps of one file: their columns, and the checksums of records in it.
+// Threads: const calls from any thread.
+class RecordTables {
+ public:
+  // UserError for a file with a column that this code does not know.
+  explicit RecordTables(Connection& database);
+
+  const StoredColumns<MissionRecord>& missions() const { return missions_; }
+  const StoredColumns<TimestepRecord>& timesteps() const { return timesteps_; }
+  bool complete() const { return missions_.complete() && timesteps_.complete(); }
+  // False in a file of format 1, whose missions have no checksums.
+  bool checked() const { return checked_; }
+
+  std::string StepsChecksum(const std::vector<TimestepRecord>& steps) const;
+  std::string MissionChecksum(const RunLayout& layout, const RunId& id, const MissionRecord& record,
+                              const std::string& steps) const;
+  Checksums Of(const RunLayout& layout, const RunId& id, const MissionRecord& record) const;
+
+ private:
+  bool checked_;
+  StoredColumns<MissionRecord> missions_;
+  StoredColumns<TimestepRecord> timesteps_;
+};
+
+}  // namespace ed3r

@@ -1,0 +1,19 @@
+// What is wrong with the missions of a file, and how it is taken out. Within a transaction of the caller's.
+#pragma once
+
+#include <vector>
+
+#include "engine/store/layout.h"
+#include "engine/store/records.h"
+#include "engine/store/sqlite.h"
+
+namespace ed3r {
+
+// Every mission that does not match its checksums or is not in the plan, timesteps without a mission, and failures that
+// are not in the plan; by key. Reads everything.
+std::vector<DamagedMission> FindDamage(Connection& database, const RunLayout& layout);
+
+// Deletes all that the file holds of these missions, so that they count as missing.
+void RemoveMissions(Connection& database, const std::vector<DamagedMission>& missions);
+
+}  // namespace ed3r

@@ -1,0 +1,155 @@
+// Whether results can be believed, as users ask it: verify, diff, run --repair, a run directory carried elsewhere.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/command.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const std::string kRbs = ED3R_SOURCE_DIR "/sweeps/rbs.yaml";
+
+bool Contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::string FlyRbs(const fs::path& dir, const std::string& arguments = "") {
+  return fmt::format("run {} --missions 4 --quiet --out {} {}", kRbs, dir.string(), arguments);
+}
+
+// Another number in the file, as a bad disk or a hand would leave it.
+void Sql(const fs::path& dir, const std::string& sql) {
+  const std::string line = fmt::format(
+      "/usr/bin/python3 -c \"import sqlite3; d = sqlite3.connect('{}'); d.execute(\\\"{}\\\"); d.commit()\"",
+      (dir / "results.sqlite").string(), sql);
+  ASSERT_EQ(std::system(line.c_str()), 0) << line;
+}
+
+class VerifyTest : public ::testing::Test {
+ protected:
+  VerifyTest() {
+    const CommandResult flown = Ed3r(FlyRbs(Run()));
+    EXPECT_EQ(flown.status, 0) << flown.err;
+    digest_ = Ed3r("digest " + Run().string()).out;
+  }
+  fs::path Run() const { return scratch_ / "run"; }
+
+  ScratchFolder scratch_;
+  std::string digest_;
+};
+
+TEST_F(VerifyTest, AWholeRunIsCalledWhole) {
+  const CommandResult verified = Ed3r("verify " + Run().string());
+  EXPECT_EQ(verified.status, 0);
+  EXPECT_EQ(verified.out, Run().string() + ": 4 missions whole\n");
+  EXPECT_TRUE(json::parse(Ed3r("verify --json " + Run().string()).out)["whole"]);
+  EXPECT_EQ(Ed3r("verify " + (scratch_ / "none").string()).status, 2);
+}
+
+TEST_F(VerifyTest, EveryCommandRefusesADamagedMissionAndARepairFliesItAgain) {
+  Sql(Run(), "UPDATE timesteps SET scs = scs + 1e-9 WHERE mission = 2 AND k = 1");
+  const std::string dir = Run().string();
+  for (const std::string& command :
+       {"digest " + dir, "report --no-figures " + dir, "replay " + dir + " rbs/2",
+        "explain --step 1 " + dir + " rbs/2", FlyRbs(Run()),
+        "merge " + (scratch_ / "merged").string() + " " + dir, "diff " + dir + " " + dir}) {
+    const CommandResult refused = Ed3r(command);
+    EXPECT_EQ(refused.status, 2) << command;
+    EXPECT_TRUE(
+        Contains(refused.err,
+                 "stage online, arm rbs, mission 2 is damaged: its timesteps do not match their checksum; "
+                 "'ed3r verify DIR' names all that is damaged, 'ed3r run SWEEP --repair' flies it again"))
+        << command << ": " << refused.err;
+    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1);
+  }
+  EXPECT_FALSE(fs::exists(Run() / "report"));
+  const CommandResult verified = Ed3r("verify " + dir);
+  EXPECT_EQ(verified.status, 1);
+  EXPECT_TRUE(Contains(verified.out,
+                       "stage online, arm rbs, mission 2: its timesteps do not match their checksum\n"));
+  const json object = json::parse(Ed3r("verify --json " + dir).out);
+  EXPECT_FALSE(object["whole"]);
+  EXPECT_EQ(object["damaged"].size(), 1u);
+
+  const CommandResult repaired = Ed3r(fmt::format("run {} --missions 4 --repair --out {}", kRbs, dir));
+  EXPECT_EQ(repaired.status, 0) << repaired.err;
+  EXPECT_TRUE(Contains(repaired.out, "repaired: stage online, arm rbs, mission 2: "));
+  EXPECT_EQ(Ed3r("digest " + dir).out, digest_);
+  EXPECT_EQ(Ed3r("verify " + dir).status, 0);
+}
+
+TEST_F(VerifyTest, StatusRefusesAMissionThatIsNotPlanned) {
+  Sql(Run(), "UPDATE missions SET mission = 9 WHERE mission = 3");
+  const CommandResult status = Ed3r("status " + Run().string());
+  EXPECT_EQ(status.status, 2);
+  EXPECT_TRUE(
+      Contains(status.err, "stage online, arm rbs, mission 9 is damaged: the plan has no such mission"));
+  EXPECT_EQ(Ed3r(FlyRbs(Run())).status, 2);
+  EXPECT_EQ(Ed3r(FlyRbs(Run(), "--repair")).status, 0);
+  EXPECT_EQ(Ed3r("digest " + Run().string()).out, digest_);
+}
+
+TEST_F(VerifyTest, DiffNamesTheFirstQuantity) {
+  ASSERT_EQ(Ed3r(FlyRbs(scratch_ / "same")).status, 0);
+  const CommandResult same = Ed3r(fmt::format("diff {} {}", Run().string(), (scratch_ / "same").string()));
+  EXPECT_EQ(same.status, 0);
+  EXPECT_EQ(same.out, "identical: 4 missions\n");
+  ASSERT_EQ(Ed3r(FlyRbs(scratch_ / "other", "--set robot.mass_kg=1.5")).status, 0);
+  const std::string both = fmt::format("diff {} {}", Run().string(), (scratch_ / "other").string());
+  const CommandResult other = Ed3r(both);
+  EXPECT_EQ(other.status, 1);
+  EXPECT_TRUE(Contains(other.out, "stage online, arm rbs, mission 0, timestep 1: ")) << other.out;
+  const json first = json::parse(Ed3r(both + " --json").out);
+  EXPECT_EQ(first["differing"], 4);
+  EXPECT_EQ(first["first"]["timestep"], 1);
+  EXPECT_NE(first["first"]["first"], first["first"]["second"]);
+}
+
+// Sweep, world, grid and network cache are gone, and the folder is called otherwise.
+TEST(SelfContainedTest, ARunDirectoryNeedsNothingBesideItself) {
+  const ScratchFolder scratch;
+  const fs::path sources = scratch / "sources";
+  fs::create_directories(sources);
+  fs::copy(ED3R_SOURCE_DIR "/sweeps/worlds", sources / "worlds", fs::copy_options::recursive);
+  std::ofstream(sources / "study.yaml") << R"(name: study
+seed: 3
+set: {training.epochs: 3, mission.world: worlds/cascades.yaml}
+stages:
+  - {name: warmup, missions: 6, set: {strategy: random, mission.sites: known, mission.base_stations: known}}
+  - {name: training, kind: train, after: warmup}
+  - {name: online, after: training, missions: 3, set: {strategy: ed3r}}
+)";
+  const CommandResult flown =
+      Ed3r(fmt::format("run {} --quiet --cache {} --out {}", (sources / "study.yaml").string(),
+                       (sources / "cache").string(), (scratch / "run").string()));
+  ASSERT_EQ(flown.status, 0) << flown.err;
+  const std::string report = Ed3r("report --no-figures --json " + (scratch / "run").string()).out;
+  const std::string explained =
+      Ed3r(fmt::format("explain {} online/ed3r-75/1 --step 1 --json", (scratch / "run").string())).out;
+  ASSERT_TRUE(Contains(explained, "candidates")) << explained;
+  fs::remove_all(sources);
+  fs::rename(scratch / "run", scratch / "moved");
+  const std::string moved = (scratch / "moved").string();
+
+  const CommandResult again = Ed3r("report --no-figures --json " + moved);
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(again.out, report);
+  const std::string data = ReadAll(scratch / "moved/report/figures/data.json");
+  EXPECT_TRUE(!Contains(data, "\"world\":null") && !Contains(data, "\"world\": null")) << data.substr(0, 400);
+  EXPECT_EQ(Ed3r(fmt::format("explain {} online/ed3r-75/1 --step 1 --json", moved)).out, explained);
+  const std::string no_cache = (scratch / "no-cache").string();
+  const CommandResult replayed = Ed3r(fmt::format("replay {} online/ed3r-75/1 --cache {}", moved, no_cache));
+  EXPECT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_TRUE(Contains(replayed.out, "identical to the stored record")) << replayed.out;
+  EXPECT_FALSE(fs::exists(no_cache)) << "it was trained again";
+  EXPECT_EQ(Ed3r("verify " + moved).status, 0);
+}
+
+}  // namespace
+}  // namespace ed3r

@@ -1,0 +1,95 @@
+#include "engine/store/difference.h"
+
+#include <functional>
+
+#include "tests/store/store_fixture.h"
+
+namespace ed3r {
+namespace {
+
+class DifferenceTest : public ::testing::Test {
+ protected:
+  // Two runs with every third mission; `change` alters what the second puts, or leaves it out.
+  RunDifference Diff(const std::function<bool(const RunId&, MissionRecord&)>& change) {
+    const std::string a = temp_ / fmt::format("a{}", ++pairs_), b = temp_ / fmt::format("b{}", pairs_);
+    const auto first = ResultStore::Open(a, TestRecipe(), TestLayout());
+    const auto second = ResultStore::Open(b, TestRecipe(), TestLayout());
+    const std::vector<RunId> all = AllMissions(TestLayout());
+    for (std::size_t i = 0; i < all.size(); i += 3) {
+      MissionRecord record = Long(all[i]);
+      first->Put(all[i], record, 0);
+      if (change(all[i], record)) second->Put(all[i], record, 0);
+    }
+    first->Commit();
+    second->Commit();
+    ResultReader here(a), there(b);
+    return DiffRuns(here, there);
+  }
+
+  static MissionRecord Long(const RunId& id) {
+    MissionRecord record = TestRecord(id);
+    record.steps.resize(5);
+    for (int k = 1; k <= 5; ++k) record.steps[static_cast<std::size_t>(k - 1)].k = k;
+    return record;
+  }
+
+  TempDir temp_;
+  int pairs_ = 0;
+};
+
+TEST_F(DifferenceTest, NothingDiffers) {
+  const RunDifference difference = Diff([](const RunId&, MissionRecord&) { return true; });
+  EXPECT_FALSE(difference.first);
+  EXPECT_EQ(difference.compared, 34);
+  EXPECT_EQ(difference.differing, 0);
+}
+
+TEST_F(DifferenceTest, TheFirstTimestepAndQuantityAreNamed) {
+  const RunDifference difference = Diff([](const RunId& id, MissionRecord& record) {
+    if (id.stage == 2) {
+      record.total_j = 12.5;
+      record.steps[3].scs = 0.25;
+      record.steps[3].x_m = 1.5;
+      record.steps[4].k = 9;
+    }
+    return true;
+  });
+  ASSERT_TRUE(difference.first);
+  EXPECT_EQ(difference.first->mission, "stage online, arm rbs, mission 2");
+  EXPECT_EQ(difference.first->timestep, 4);
+  EXPECT_EQ(difference.first->quantity, "x_m");
+  EXPECT_EQ(difference.first->there, "1.5");
+  EXPECT_EQ(difference.differing, 20);
+}
+
+TEST_F(DifferenceTest, OfTheRecordAloneWhereTimestepsAgree) {
+  const RunDifference difference = Diff([](const RunId& id, MissionRecord& record) {
+    if (id.stage == 0 && id.mission == 6) record.halts += 1;
+    return true;
+  });
+  ASSERT_TRUE(difference.first);
+  EXPECT_EQ(difference.first->mission, "stage warmup, arm warmup, mission 6");
+  EXPECT_EQ(difference.first->timestep, 0);
+  EXPECT_EQ(difference.first->quantity, "halts");
+  EXPECT_EQ(difference.differing, 1);
+}
+
+TEST_F(DifferenceTest, AShorterMissionAndAMissingOne) {
+  const RunDifference shorter = Diff([](const RunId& id, MissionRecord& record) {
+    if (id.mission == 9) record.steps.pop_back();
+    return true;
+  });
+  ASSERT_TRUE(shorter.first);
+  EXPECT_EQ(shorter.first->timestep, 5);
+  EXPECT_EQ(shorter.first->quantity, "timestep");
+  EXPECT_EQ(shorter.first->here, "flown");
+  const RunDifference missing = Diff([](const RunId& id, MissionRecord&) { return id.mission != 9; });
+  ASSERT_TRUE(missing.first);
+  EXPECT_EQ(missing.first->mission, "stage warmup, arm warmup, mission 9");
+  EXPECT_EQ(missing.first->quantity, "mission");
+  EXPECT_EQ(missing.only_here, 1);
+  EXPECT_EQ(missing.differing, 0);
+}
+
+}  // namespace
+}  // namespace ed3r
