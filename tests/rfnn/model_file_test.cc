@@ -178,7 +178,7 @@ TEST_F(ModelFileTest, WritingReplacesAndLeavesNothingElseBehind) {
 TEST_F(ModelFileTest, AFolderThatIsNotThereIsAUserError) {
   const std::string nowhere = folder_.File("no/such/folder/net.rfnn");
   EXPECT_EQ(MessageOf<UserError>([&] { WriteModel(nowhere, Model(kTiny, RandomModel(kTiny, 1))); }),
-            nowhere + ": cannot write: No such file or directory");
+            nowhere + ": cannot be written: No such file or directory");
 }
 
 TEST(SealedFileTest, NumbersAreLittleEndian) {

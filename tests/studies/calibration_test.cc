@@ -1,4 +1,4 @@
-// The fence: what was calibrated on the RBS row does not change without the record of its search.
+// The fence: what was calibrated on the paper's random walk does not change without the record of its search.
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
@@ -29,46 +29,76 @@ TEST(CalibrationTest, DefaultsAreTheFrozenOnes) {
   int compared = 0;
   for (const auto& entry : YAML::LoadFile(kFolder + "calibration/frozen.yaml")) {
     const std::string key = entry.first.as<std::string>(), value = entry.second.as<std::string>();
-    if (key == "world_sha256") continue;
+    if (key.ends_with("_sha256")) continue;
     Config frozen;
     ASSERT_EQ(SetParameter(frozen, key, value), "");
     EXPECT_EQ(GetParameter(defaults, key), GetParameter(frozen, key)) << key;
     ++compared;
   }
-  EXPECT_GE(compared, 8);
+  EXPECT_GE(compared, 19);
 }
 
 TEST(CalibrationTest, ExactlyTheFrozenParametersSayThatTheyAreCalibrated) {
   std::set<std::string> frozen, said;
   for (const auto& entry : YAML::LoadFile(kFolder + "calibration/frozen.yaml")) {
     const std::string key = entry.first.as<std::string>();
-    if (key != "world_sha256") frozen.insert(key);
+    if (!key.ends_with("_sha256")) frozen.insert(key);
   }
   for (const ParameterInfo& parameter : Parameters())
     if (parameter.source.find("calibrated") != std::string::npos) said.insert(parameter.key);
   EXPECT_EQ(said, frozen);
 }
 
-TEST(CalibrationTest, TheWorldIsTheOneThatWasCalibratedIn) {
-  const YAML::Node frozen = YAML::LoadFile(kFolder + "calibration/frozen.yaml");
+std::string HashOf(const std::string& file) {
   Sha256 hash;
-  hash.Update(Content(kFolder + "worlds/ridges.yaml"));
-  EXPECT_EQ(hash.Hex(), frozen["world_sha256"].as<std::string>());
+  hash.Update(Content(file));
+  return hash.Hex();
 }
 
-TEST(CalibrationTest, TheFrozenPointIsTheBestOfTheRecord) {
-  const std::vector<CsvRow> rows = ParseCsv(Content(kFolder + "calibration/record.csv"), "record.csv");
-  const auto column = [&](const std::string& name) {
+TEST(CalibrationTest, TheWorldIsTheOneThatWasCalibratedIn) {
+  const YAML::Node frozen = YAML::LoadFile(kFolder + "calibration/frozen.yaml");
+  EXPECT_EQ(HashOf(kFolder + "worlds/paper.yaml"), frozen["world_sha256"].as<std::string>());
+  EXPECT_EQ(HashOf(kFolder + "worlds/ridges.yaml"), frozen["terrain_sha256"].as<std::string>());
+  EXPECT_EQ(Config().mission.world, "worlds/paper.yaml");
+}
+
+struct Record {
+  std::vector<CsvRow> rows;
+  std::size_t Column(const std::string& name) const {
     return static_cast<std::size_t>(std::find(rows[0].begin(), rows[0].end(), name) - rows[0].begin());
-  };
-  const std::size_t loss = column("loss"), frozen = column("frozen");
-  double least = 1e300, of_frozen = -1;
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    least = std::min(least, std::stod(rows[i].at(loss)));
-    if (rows[i].at(frozen) == "yes") of_frozen = std::stod(rows[i].at(loss));
   }
+};
+
+// Of the wave that judges, the last one.
+TEST(CalibrationTest, TheFrozenPointIsTheBestOfTheJudgedOnes) {
+  const Record record{ParseCsv(Content(kFolder + "calibration/record.csv"), "record.csv")};
+  const std::size_t wave = record.Column("wave"), worst = record.Column("implausibility"),
+                    frozen = record.Column("frozen");
+  int last = 0;
+  for (std::size_t i = 1; i < record.rows.size(); ++i) last = std::max(last, std::stoi(record.rows[i].at(wave)));
+  double least = 1e300, of_frozen = -1;
+  int marked = 0;
+  for (std::size_t i = 1; i < record.rows.size(); ++i) {
+    const CsvRow& row = record.rows[i];
+    if (row.at(worst).empty()) continue;
+    if (std::stoi(row.at(wave)) == last) least = std::min(least, std::stod(row.at(worst)));
+    if (row.at(frozen) != "yes") continue;
+    of_frozen = std::stod(row.at(worst));
+    ++marked;
+  }
+  EXPECT_EQ(marked, 1);
   EXPECT_EQ(of_frozen, least);
-  EXPECT_GE(rows.size(), 41u);
+  EXPECT_GE(record.rows.size(), 300u);
+}
+
+// Every world that is kept is one of the record's, with a world file of its own.
+TEST(CalibrationTest, TheMatchedWorldsAreThere) {
+  const Record matched{ParseCsv(Content(kFolder + "calibration/matched.csv"), "matched.csv")};
+  ASSERT_GE(matched.rows.size(), 22u);  // the header, the default and twenty others
+  for (std::size_t i = 1; i < matched.rows.size(); ++i) {
+    const std::string& name = matched.rows[i].at(matched.Column("world"));
+    EXPECT_FALSE(Content(kFolder + (i == 1 ? "worlds/" : "worlds/matched/") + name + ".yaml").empty()) << name;
+  }
 }
 
 }  // namespace
