@@ -61,7 +61,7 @@ struct AgentsConfig {
   double epsilon_min = 0.01;
   double epsilon_decay = 0.95;
   ElseBranch else_branch = ElseBranch::kDecayed;
-  RandomExecution random_execution = RandomExecution::kEqual;
+  RandomExecution random_execution = RandomExecution::kCoin;
   double region_size_m = 60.0;
   int region_visits = 20;
   bool early_completion = true;
@@ -104,7 +104,7 @@ struct AgentsConfig {
            .source = "Table ED3R configuration, R14",
            .meaning = "camera tilt lies in [0, this]; 0 level, 90 straight down"});
     visit("tilt_command", self.tilt_command,
-          {.source = "R14", .meaning = "tilt commands are set-points or changes"});
+          {.source = "R14, calibrated", .meaning = "tilt commands are set-points or changes"});
     visit("range_rule", self.range_rule,
           {.source = "R21", .meaning = "fixed values divide the ranges, or are percentages"});
     visit("decrease_axes", self.decrease_axes,
@@ -145,7 +145,7 @@ struct AgentsConfig {
     visit("else_branch", self.else_branch,
           {.source = "R20", .meaning = "epsilon in normal operation: decayed, or the Algorithm's 0"});
     visit("random_execution", self.random_execution,
-          {.source = "R36",
+          {.source = "R36, calibrated",
            .meaning = "random choices of the robot: offload, Full, Quantized alike, or a coin between "
                       "offloading and on board first"});
     visit("region_size_m", self.region_size_m,

@@ -45,7 +45,7 @@ struct EnergyConfig {
   HoverForm hover_form = HoverForm::kPhysical;
   VerticalForm vertical_form = VerticalForm::kPrinted;
   MoveOrder move_order = MoveOrder::kHorizontalFirst;
-  MoveTime move_time = MoveTime::kFlown;
+  MoveTime move_time = MoveTime::kNominal;
   double paper_efficiency = 1.0;
   double momentum_efficiency = 0.713;
   double induced_factor = 1.456;
@@ -66,7 +66,7 @@ struct EnergyConfig {
            .meaning = "P_ver = m g +- drag (printed), P_hov + m g v (climb), or m g v + drag (mgv)"});
     visit("move_order", self.move_order, {.source = "R4", .meaning = "which leg of a move is flown first"});
     visit("move_time", self.move_time,
-          {.source = "R4", .meaning = "bill the times that were flown, or distance / speed"});
+          {.source = "R4, calibrated", .meaning = "bill the times that were flown, or distance / speed"});
     constexpr std::string_view kFit = "ed3r fit, Matrice 100";
     visit("paper_efficiency", self.paper_efficiency,
           {.min = 0.05,

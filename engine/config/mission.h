@@ -21,7 +21,7 @@ struct EnumNames<StartYaw> {
 
 struct MissionConfig {
   std::string strategy = "rbs";
-  std::string world = "worlds/ridges.yaml";
+  std::string world = "worlds/paper.yaml";
   SiteSet sites = SiteSet::kAll;
   SiteSet base_stations = SiteSet::kAll;
   int first_scenario = 0;

@@ -38,10 +38,10 @@ struct EnumNames<ViewNoise> {
 
 // Response of one detection model.
 struct ResponseConfig {
-  double half_signal = 0.000348;
-  double slope = 3.27;
-  double ceiling = 0.956;
-  double view_sigma = 0.5;
+  double half_signal = 5.29e-5;
+  double slope = 5.42;
+  double ceiling = 0.93;
+  double view_sigma = 0.44;
   double frame_sigma = 0.3;
   double distractor_gain = 1.0;
 
@@ -64,7 +64,7 @@ struct ResponseConfig {
           {.unit = "logit",
            .min = 0,
            .max = 10,
-           .source = kAssumedSource,
+           .source = kCalibratedSource,
            .meaning = "fluctuation from view to view"});
     visit("frame_sigma", self.frame_sigma,
           {.unit = "logit",
@@ -75,7 +75,7 @@ struct ResponseConfig {
     visit("distractor_gain", self.distractor_gain,
           {.min = 0,
            .max = 100,
-           .source = "R34",
+           .source = "R34, Quantized's calibrated",
            .meaning = "how much a distractor excites this model, times distractor_weight"});
   }
 };
@@ -84,18 +84,22 @@ struct PerceptionConfig {
   PerceptionTier tier = PerceptionTier::kProfile;
   double frame_threshold = 0.5;
   double fire_weight = 1.0;
-  double smoke_weight = 0.745;
-  double haze_range_m = 479.0;
-  double distractors_per_km2 = 178.0;
+  double smoke_weight = 0.489;
+  double haze_range_m = 227.0;
+  double distractors_per_km2 = 122.0;
   double distractor_radius_m = 2.5;
-  double distractor_weight = 0.5;
-  double distractor_radius_sigma = 0.3;
-  double distractor_tilt_deg = 42.3;
-  double distractor_tilt_width_deg = 5.0;
+  double distractor_weight = 1.92;
+  double distractor_radius_sigma = 0.985;
+  double distractor_tilt_deg = 73.5;
+  double distractor_tilt_width_deg = 1.2;
   ViewNoise view_noise = ViewNoise::kKept;
   ResponseConfig full;
-  ResponseConfig quantized{
-      .half_signal = 0.000727, .slope = 2.45, .ceiling = 0.916, .view_sigma = 0.7, .frame_sigma = 0.6};
+  ResponseConfig quantized{.half_signal = 7.19e-5,
+                           .slope = 4.06,
+                           .ceiling = 0.89,
+                           .view_sigma = 0.616,
+                           .frame_sigma = 0.6,
+                           .distractor_gain = 0.342};
   RenderConfig render;
   DetectorConfig detector;
 
@@ -125,10 +129,10 @@ struct PerceptionConfig {
     visit("distractor_radius_sigma", self.distractor_radius_sigma,
           {.min = 0,
            .max = 2,
-           .source = "R34",
+           .source = "R34, calibrated",
            .meaning = "spread of the logarithm of distractors' radii: the tail of large ones"});
     visit("distractor_weight", self.distractor_weight,
-          {.min = 0, .max = 10, .source = "R34", .meaning = "weight of a visible distractor"});
+          {.min = 0, .max = 10, .source = "R34, calibrated", .meaning = "weight of a visible distractor"});
     visit("distractor_tilt_deg", self.distractor_tilt_deg,
           {.unit = "deg",
            .min = 0,
@@ -137,7 +141,11 @@ struct PerceptionConfig {
            .meaning =
                "steepness below the horizon at which distractors mislead half as much as straight down"});
     visit("distractor_tilt_width_deg", self.distractor_tilt_width_deg,
-          {.unit = "deg", .min = 0.1, .max = 45, .source = "R34", .meaning = "how gradually that sets in"});
+          {.unit = "deg",
+           .min = 0.1,
+           .max = 45,
+           .source = "R34, calibrated",
+           .meaning = "how gradually that sets in"});
     visit("view_noise", self.view_noise,
           {.source = "R34", .meaning = "fluctuation of a view that the robot hovers over"});
     visit.Nested("full", self.full);

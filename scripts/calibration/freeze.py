@@ -1,8 +1,8 @@
 """Keeps what the search found: the worlds that are left, the one that stands for them, and the picture of the set.
 
 Writes
-  sweeps/calibration/frozen.yaml    the default: keys of the world with the least implausibility, and hashes of what they
-                                    were found in
+  sweeps/calibration/frozen.yaml    the default: keys of the world, among those kept, whose random walk is the paper's in
+                                    most of twelve quantities, and hashes of what they were found in
   sweeps/calibration/matched.csv    every world that is left, with its point, its measures and its implausibility
   sweeps/worlds/paper.yaml          the default world
   sweeps/worlds/matched/            the other worlds
@@ -15,7 +15,7 @@ import hashlib
 
 from calibration import record
 from calibration.corner import draw
-from calibration.evidence import EVIDENCE
+from calibration.evidence import PRINTED, equivalent, equivalents
 from calibration.flights import RIDGES, ROOT
 from calibration.space import NAMES, settings_of, world_text
 from calibration.waves import CUT
@@ -62,10 +62,13 @@ def keys_of(row):
 
 
 def matched_rows(rows, judged_wave):
-    """Judged worlds, the most plausible first: those that are not ruled out, and so many others that MATCHED are kept."""
+    """Judged worlds: those that are not ruled out, and so many others that MATCHED are kept; the default first, the others by
+    implausibility."""
     judged = sorted((row for row in record.flown(rows) if row["wave"] == judged_wave), key=lambda row: row["implausibility"])
     left = sum(row["implausibility"] < CUT for row in judged)
-    return judged[:max(left, MATCHED)]
+    kept = judged[:max(left, MATCHED)]
+    default = max(kept, key=lambda row: (len(equivalents(row)), -row["implausibility"]))
+    return [default] + [row for row in kept if row is not default]
 
 
 def sha256(path):
@@ -109,13 +112,14 @@ def write_matched(folder, matched, files):
     (ROOT / "sweeps/matched.yaml").write_text(SWEEP.format(missions=84, variants="\n".join(variants)))
 
 
-def write_table(folder, row):
-    lines = [f"{'RBS in the default world':<34}{'paper':>9}{'ours':>9}{'+-':>7}{'implausibility':>16}"]
-    for quantity in EVIDENCE:
-        value, error = row[quantity.name], row[f"{quantity.name}_error"]
-        distance = abs(quantity.scaled(value) - quantity.target()) / (
-            (quantity.slope(value) * error) ** 2 + quantity.variance()) ** 0.5
-        lines.append(f"{quantity.word:<34}{quantity.paper:>9.2f}{value:>9.2f}{error:>7.2f}{distance:>16.2f}")
+def write_table(folder, row, rows):
+    lines = [f"{'RBS in the default world':<28}{'paper':>9}{'ours':>9}{'+-':>7}  equivalent"]
+    for name, paper, error, percentage in PRINTED:
+        verdict = "yes" if equivalent(row[name], paper, error, percentage) else "no"
+        lines.append(f"{name:<28}{paper:>9.2f}{row[name]:>9.2f}{row[f'{name}_error']:>7.2f}  {verdict}")
+    counted = sorted((len(equivalents(other)) for other in record.flown(rows) if other["missions"] >= 300), reverse=True)
+    lines.append(f"{len(equivalents(row))} of {len(PRINTED)}; the most of any of {len(counted)} flights of 300 missions and more: "
+                 f"{counted[0]}. P85 MSR and WER cannot be: the paper's own 128 missions leave more than the margin.")
     (folder / "rbs.txt").write_text("\n".join(lines) + "\n")
     print("\n".join(lines))
 
@@ -130,6 +134,6 @@ def freeze(rows, folder, judged_wave):
     write_matched(folder, matched, files)
     results = ROOT / "results/calibration"
     results.mkdir(exist_ok=True)
-    write_table(results, matched[0])
+    write_table(results, matched[0], rows)
     draw(rows, matched, results / "corner.png")
     print(f"{len(matched)} worlds, {sum(row['implausibility'] < CUT for row in matched)} of them not ruled out")

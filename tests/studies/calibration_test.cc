@@ -44,8 +44,11 @@ TEST(CalibrationTest, ExactlyTheFrozenParametersSayThatTheyAreCalibrated) {
     const std::string key = entry.first.as<std::string>();
     if (!key.ends_with("_sha256")) frozen.insert(key);
   }
-  for (const ParameterInfo& parameter : Parameters())
-    if (parameter.source.find("calibrated") != std::string::npos) said.insert(parameter.key);
+  frozen.insert("perception.full.distractor_gain");  // 1, the unit that Quantized's is told in
+  for (const ParameterInfo& parameter : Parameters()) {
+    if (parameter.source.find("calibrated") == std::string::npos) continue;
+    said.insert(parameter.key);
+  }
   EXPECT_EQ(said, frozen);
 }
 
@@ -69,25 +72,23 @@ struct Record {
   }
 };
 
-// Of the wave that judges, the last one.
-TEST(CalibrationTest, TheFrozenPointIsTheBestOfTheJudgedOnes) {
+// One row is marked, of the wave that judges (the last), and it is the first of the worlds that are kept.
+TEST(CalibrationTest, TheFrozenPointIsOfTheRecord) {
   const Record record{ParseCsv(Content(kFolder + "calibration/record.csv"), "record.csv")};
-  const std::size_t wave = record.Column("wave"), worst = record.Column("implausibility"),
-                    frozen = record.Column("frozen");
-  int last = 0;
-  for (std::size_t i = 1; i < record.rows.size(); ++i) last = std::max(last, std::stoi(record.rows[i].at(wave)));
-  double least = 1e300, of_frozen = -1;
-  int marked = 0;
+  const Record matched{ParseCsv(Content(kFolder + "calibration/matched.csv"), "matched.csv")};
+  const std::size_t wave = record.Column("wave"), frozen = record.Column("frozen");
+  int last = 0, marked = 0;
+  for (std::size_t i = 1; i < record.rows.size(); ++i)
+    last = std::max(last, std::stoi(record.rows[i].at(wave)));
   for (std::size_t i = 1; i < record.rows.size(); ++i) {
     const CsvRow& row = record.rows[i];
-    if (row.at(worst).empty()) continue;
-    if (std::stoi(row.at(wave)) == last) least = std::min(least, std::stod(row.at(worst)));
     if (row.at(frozen) != "yes") continue;
-    of_frozen = std::stod(row.at(worst));
     ++marked;
+    EXPECT_EQ(std::stoi(row.at(wave)), last);
+    for (const char* column : {"half_signal", "site_distance_m", "energy_kj", "implausibility"})
+      EXPECT_EQ(row.at(record.Column(column)), matched.rows.at(1).at(matched.Column(column))) << column;
   }
   EXPECT_EQ(marked, 1);
-  EXPECT_EQ(of_frozen, least);
   EXPECT_GE(record.rows.size(), 300u);
 }
 
@@ -97,7 +98,8 @@ TEST(CalibrationTest, TheMatchedWorldsAreThere) {
   ASSERT_GE(matched.rows.size(), 22u);  // the header, the default and twenty others
   for (std::size_t i = 1; i < matched.rows.size(); ++i) {
     const std::string& name = matched.rows[i].at(matched.Column("world"));
-    EXPECT_FALSE(Content(kFolder + (i == 1 ? "worlds/" : "worlds/matched/") + name + ".yaml").empty()) << name;
+    EXPECT_FALSE(Content(kFolder + (i == 1 ? "worlds/" : "worlds/matched/") + name + ".yaml").empty())
+        << name;
   }
 }
 
