@@ -68,6 +68,7 @@ InputFiles ReadInputFiles(const SweepPlan& plan) {
   for (const auto& [name, path] : called) paths.insert(path);
   for (const std::string& world : Worlds(plan)) {
     const WorldSpec spec = ReadWorldFile(world);
+    for (const std::string& base : spec.bases) paths.insert(Located(base));
     if (spec.grid) paths.insert(Located(spec.grid->file));
     if (spec.forest && spec.forest->stem_map) paths.insert(Located(spec.forest->stem_map->file));
   }

@@ -49,6 +49,7 @@ class HeaderReader {
     constexpr std::size_t kFrame = 12;
     std::size_t at = kPngMagic.size();
     const std::size_t header = at;
+    if (bytes_.size() < at + kFrame) Refuse("is cut short");
     if (bytes_.substr(at + 4, 4) != "IHDR") Refuse("is damaged: its header does not stand first");
     while (true) {
       const std::uint32_t length = Number(at, 4);

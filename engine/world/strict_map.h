@@ -63,7 +63,7 @@ class StrictMap {
 
   bool Has(std::string_view key) const;
   bool HasMap(std::string_view key) const;  // the key is there and its value is a mapping
-  std::string File() const;  // in which this mapping stands
+  std::string File() const;                 // in which this mapping stands
 
   // Fails at the key's value, or at the mapping when the key is absent.
   [[noreturn]] void Fail(std::string_view key, const std::string& problem) const;
@@ -77,9 +77,9 @@ class StrictMap {
   StrictMap Inside(std::string_view key, const YamlNode& node, std::string path) const;
 
   const YamlNode* Find(std::string_view key);
-  const YamlNode* ValueOf(std::string_view key) const;  // null when the key is absent
+  const YamlNode* ValueOf(std::string_view key) const;                        // null when the key is absent
   const std::shared_ptr<const YamlNode>& TreeOf(std::string_view key) const;  // where it stands, or this one
-  std::string Name(std::string_view key) const;  // with the path that leads here
+  std::string Name(std::string_view key) const;                               // with the path that leads here
   double Number(const YamlNode& node, std::string_view key, const AllowedRange& range) const;
   const std::vector<YamlNode>& List(const YamlNode& node, std::string_view key, std::size_t min_count,
                                     std::size_t max_count, std::string_view of) const;
@@ -87,7 +87,7 @@ class StrictMap {
 
   std::shared_ptr<const YamlNode> node_;
   std::vector<std::shared_ptr<const YamlNode>> bases_;  // taken over: the nearest first
-  std::string path_;  // "" or "terrain.grid."
+  std::string path_;                                    // "" or "terrain.grid."
   std::vector<std::string> asked_;
   std::vector<std::string> missing_;
 };

@@ -23,8 +23,9 @@ std::string Beside(const std::string& world_file, const std::string& named) {
   return (std::filesystem::path(world_file).parent_path() / named).string();
 }
 
-// A world file with the keys of its bases. `above` are the files that led here.
-StrictMap WithBases(const std::string& file, std::vector<std::string> above) {
+// A world file with the keys of its bases, which are added to `bases`. `above` are the files that led here.
+StrictMap WithBases(const std::string& file, std::vector<std::string> above,
+                    std::vector<std::string>& bases) {
   StrictMap map = StrictMap::FromFile(file);
   std::string base;
   if (!map.Read("base", base)) return map;
@@ -38,7 +39,8 @@ StrictMap WithBases(const std::string& file, std::vector<std::string> above) {
              fmt::format("'{}' is not allowed; at most {} bases on top of one another", base, kMaxBases));
   if (!std::filesystem::is_regular_file(base_file))
     map.Fail("base", fmt::format("'{}' is no file", base_file));
-  map.TakeOver(WithBases(base_file, std::move(above)));
+  bases.push_back(base_file);
+  map.TakeOver(WithBases(base_file, std::move(above), bases));
   return map;
 }
 
@@ -263,8 +265,8 @@ void ReadFire(StrictMap& map, FireShape& fire) {
 }  // namespace
 
 WorldSpec ReadWorldFile(const std::string& file) {
-  StrictMap map = WithBases(file, {});
   WorldSpec spec;
+  StrictMap map = WithBases(file, {}, spec.bases);
   spec.file = file;
   map.Require("name", spec.name);
   map.Read("seed", spec.seed);

@@ -106,6 +106,7 @@ struct PlacedSitesSpec {
 
 struct WorldSpec {
   std::string file;
+  std::vector<std::string> bases;  // the files that it takes over, nearest first, as the program opens them
   std::string name;
   std::uint64_t seed = 0;
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "engine/agents/robot_agent.h"
 #include "engine/core/check.h"
 
@@ -42,19 +44,34 @@ TEST(StrategyTest, UnknownNameIsRefusedWithTheList) {
   }
 }
 
-TEST(StrategyTest, RandomRobotUsesAllThreeActionsAlike) {
-  const Config config;
-  int counts[3] = {};
+// How often of 3000 a random robot offloads, looks with Full, with Quantized.
+std::array<int, 3> RandomChoices(const char* strategy, RandomExecution random) {
+  Config config;
+  config.agents.random_execution = random;
+  std::array<int, 3> counts{};
   for (std::uint32_t scenario = 0; scenario < 3000; ++scenario) {
     RobotAgent robot({.config = config,
-                      .strategy = FindStrategy("random"),
+                      .strategy = FindStrategy(strategy),
                       .networks = {},
                       .size_m = {530, 530, 165},
                       .seed = 1,
                       .scenario = scenario});
-    ++counts[static_cast<int>(robot.ChooseExecution(RobotView(), 1.0, 1).execution)];
+    ++counts[static_cast<std::size_t>(robot.ChooseExecution(RobotView(), 1.0, 1).execution)];
   }
-  for (int count : counts) EXPECT_NEAR(count, 1000, 130);  // five standard deviations
+  return counts;
+}
+
+TEST(StrategyTest, RandomRobotUsesAllThreeActionsAlike) {
+  for (const int count : RandomChoices("random", RandomExecution::kEqual))
+    EXPECT_NEAR(count, 1000, 130);  // five standard deviations
+}
+
+TEST(StrategyTest, OrTossesACoinForOffloadingFirst) {
+  const auto [offload, full, quantized] = RandomChoices("random", RandomExecution::kCoin);
+  EXPECT_NEAR(offload, 1500, 137);
+  EXPECT_NEAR(full, 750, 119);
+  EXPECT_NEAR(quantized, 750, 119);
+  EXPECT_EQ(RandomChoices("random-offload", RandomExecution::kCoin)[0], 3000);
 }
 
 }  // namespace

@@ -59,18 +59,17 @@ TEST_F(StoredFilesTest, TablesThatCannotBeAreRefusedInOneLine) {
         "UPDATE runs SET first_scenario = -5", "DROP TABLE recipe", "DROP TABLE runs",
         "UPDATE session_notes SET value = CAST(x'ff41' AS TEXT)"}) {
     SCOPED_TRACE(sql);
-    ExpectOneLine(Ed3r("report --no-figures " + Altered(sql)), 2, "results.sqlite: the file is damaged (");
+    ExpectOneLine(Ed3r("report --no-figures " + Altered(sql)), 2, "results.sqlite: the file is damaged");
   }
 }
 
 TEST_F(StoredFilesTest, EveryValueOfAStoreIsEscapedInThePage) {
   const std::string run = Altered(
-      "UPDATE worlds SET fingerprint = '<script>alert(1)</script>'; UPDATE sessions SET begun_utc = "
-      "'<b>now'; "
+      "UPDATE sessions SET begun_utc = '<b>now', host = '<script>alert(1)</script>'; "
       "UPDATE session_notes SET value = '<q>' || value");
   ASSERT_EQ(Ed3r("report --no-figures " + run).status, 0);
   const std::string page = ReadAll(fs::path(run) / "report" / "index.html");
-  EXPECT_NE(page.find("&lt;script&gt;alert(1)"), std::string::npos);
+  EXPECT_NE(page.find("&lt;b&gt;now"), std::string::npos);
   for (const char* raw : {"<script", "<b>now", "<q>"}) EXPECT_EQ(page.find(raw), std::string::npos) << raw;
 }
 

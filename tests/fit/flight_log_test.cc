@@ -95,7 +95,7 @@ TEST(FlightLogTest, NamesMissingColumnsWithTheNearest) {
   EXPECT_EQ(LogComplaint("", kFormat), "log.csv:1:1: empty file; a header line was expected");
   EXPECT_EQ(LogComplaint("t,t\n1,2\n"), "log.csv:1:3: column 't' is there twice");
   EXPECT_EQ(Complaint([] { ReadFlightLog({"no/such.csv"}, LoadLogFormat("m100")); }),
-            "no/such.csv: cannot be read");
+            "no/such.csv: cannot be read: No such file or directory");
 }
 
 TEST(FlightLogTest, RefusesLogsThatCannotBeFitted) {

@@ -39,6 +39,13 @@ FlownMove FlyOnce(const Config& config, const MotionCommand& command, TraceSink*
   return flight.Execute(command, 1);
 }
 
+// Bills the times that were flown (R4), which most of these tests are about.
+Config FlownTimes() {
+  Config config;
+  config.energy.move_time = MoveTime::kFlown;
+  return config;
+}
+
 double NominalLegS(double length_m, double speed_mps = 5.0, double acceleration_mps2 = 6.0) {
   const double ramp_m = speed_mps * speed_mps / acceleration_mps2;
   return length_m >= ramp_m ? length_m / speed_mps + speed_mps / acceleration_mps2
@@ -46,7 +53,7 @@ double NominalLegS(double length_m, double speed_mps = 5.0, double acceleration_
 }
 
 TEST(FlightTest, ZeroAndHoverCommandsTakeNoTimeAndNoPhysics) {
-  Flight flight(OpenSky(), Config(), PoseAt(265, 265, 60, 0.3), 1, 0);
+  Flight flight(OpenSky(), FlownTimes(), PoseAt(265, 265, 60, 0.3), 1, 0);
   MotionCommand hover = Move(5, 5, 5, 1.0);
   hover.hover = true;
   for (const MotionCommand& command : {Move(0, 0, 0), hover}) {
@@ -64,7 +71,7 @@ TEST(FlightTest, LegsEndOnTargetWithinAThirdOfASecondOfTheIdealTime) {
   for (const double length_m : {0.5, 1.0, 3.0, 8.0, 20.0, 28.0}) {
     for (const double heading : {0.0, 0.8, 2.5, -1.9}) {
       const Eigen::Vector3d way = length_m * Eigen::Vector3d(std::cos(heading), std::sin(heading), 0);
-      const FlownMove move = FlyOnce(Config(), Move(way.x(), way.y(), 0));
+      const FlownMove move = FlyOnce(FlownTimes(), Move(way.x(), way.y(), 0));
       EXPECT_NEAR((move.end.position_m - Eigen::Vector3d(265, 265, 60) - way).norm(), 0.0, 0.05);
       EXPECT_GT(move.horizontal_s, NominalLegS(length_m));
       EXPECT_LT(move.horizontal_s, NominalLegS(length_m) + 0.34) << length_m;
@@ -73,7 +80,7 @@ TEST(FlightTest, LegsEndOnTargetWithinAThirdOfASecondOfTheIdealTime) {
       EXPECT_EQ(move.contact_steps, 0);
     }
     for (const double sign : {-1.0, 1.0}) {
-      const FlownMove move = FlyOnce(Config(), Move(0, 0, sign * length_m));
+      const FlownMove move = FlyOnce(FlownTimes(), Move(0, 0, sign * length_m));
       const double flown_s = sign > 0 ? move.ascent_s : move.descent_s;
       EXPECT_NEAR((move.end.position_m - Eigen::Vector3d(265, 265, 60 + sign * length_m)).norm(), 0.0, 0.05);
       EXPECT_LT(flown_s, NominalLegS(length_m) + 0.34);
@@ -84,7 +91,7 @@ TEST(FlightTest, LegsEndOnTargetWithinAThirdOfASecondOfTheIdealTime) {
 
 TEST(FlightTest, FliesHorizontalThenVerticalOrTheOtherWayRound) {
   for (const bool vertical_first : {false, true}) {
-    Config config;
+    Config config = FlownTimes();
     if (vertical_first) config.energy.move_order = MoveOrder::kVerticalFirst;
     Recorder recorder;
     const FlownMove move = FlyOnce(config, Move(12, -9, -10), &recorder);
@@ -104,7 +111,7 @@ TEST(FlightTest, FliesHorizontalThenVerticalOrTheOtherWayRound) {
 
 TEST(FlightTest, TraceRunsFromStartToEndAndKeepsTheLimits) {
   Recorder recorder;
-  const FlownMove move = FlyOnce(Config(), Move(20, 10, 8, 1.0), &recorder);
+  const FlownMove move = FlyOnce(FlownTimes(), Move(20, 10, 8, 1.0), &recorder);
   const std::vector<TraceSample>& samples = recorder.samples;
   const double total_s = move.horizontal_s + move.ascent_s + move.hovering_s;
   ASSERT_NEAR(static_cast<double>(samples.size()), total_s * kTraceHz, 3.0);
@@ -123,31 +130,31 @@ TEST(FlightTest, TraceRunsFromStartToEndAndKeepsTheLimits) {
 
 TEST(FlightTest, TurnsFlyWithTheMoveAndOnlyTheExcessHovers) {
   const double right_angle = std::numbers::pi / 2;
-  const FlownMove with_move = FlyOnce(Config(), Move(20, 0, 0, right_angle));
+  const FlownMove with_move = FlyOnce(FlownTimes(), Move(20, 0, 0, right_angle));
   EXPECT_NEAR(with_move.end.yaw_rad, right_angle, 0.02);
   EXPECT_EQ(with_move.hovering_s, 0.0);
   EXPECT_LT(with_move.horizontal_s, NominalLegS(20) + 0.34);
 
-  const FlownMove alone = FlyOnce(Config(), Move(0, 0, 0, -right_angle));
+  const FlownMove alone = FlyOnce(FlownTimes(), Move(0, 0, 0, -right_angle));
   EXPECT_NEAR(alone.end.yaw_rad, -right_angle, 0.02);
   EXPECT_GT(alone.hovering_s, 1.0);  // 90 degrees at 90 degrees/s ...
   EXPECT_LT(alone.hovering_s, 2.2);  // ... with the time that the rotors need to start and stop the turn
   EXPECT_NEAR((alone.end.position_m - Eigen::Vector3d(265, 265, 60)).norm(), 0.0, 0.02);
 
-  const FlownMove both = FlyOnce(Config(), Move(1, 0, 0, right_angle));
+  const FlownMove both = FlyOnce(FlownTimes(), Move(1, 0, 0, right_angle));
   EXPECT_NEAR(both.horizontal_s + both.hovering_s, alone.hovering_s, 0.6);
   EXPECT_GT(both.hovering_s, 0.5);
 }
 
 TEST(FlightTest, YawStaysInItsRangeOverManyTurns) {
-  Flight flight(OpenSky(), Config(), PoseAt(265, 265, 60, 3.0), 1, 0);
+  Flight flight(OpenSky(), FlownTimes(), PoseAt(265, 265, 60, 3.0), 1, 0);
   for (int i = 1; i <= 4; ++i) flight.Execute(Move(2, 0, 0, 1.5), i);
   EXPECT_NEAR(flight.CurrentPose().yaw_rad, std::remainder(3.0 + 4 * 1.5, 2 * std::numbers::pi), 0.1);
   EXPECT_EQ(flight.CurrentPose().tilt_rad, 0.5);
 }
 
 TEST(FlightTest, NominalTimesAreDistanceOverSpeed) {
-  Config config;
+  Config config = FlownTimes();
   config.energy.move_time = MoveTime::kNominal;
   const FlownMove move = FlyOnce(config, Move(12, 9, 10, 0.5));
   EXPECT_NEAR(move.horizontal_s, 3.0, 0.02);
@@ -176,7 +183,7 @@ TEST(FlightTest, WindIsFlownAgainst) {
 }
 
 TEST(FlightTest, GustsMoveTheRobotButEveryLegEnds) {
-  Config config;
+  Config config = FlownTimes();
   config.environment.wind_x_mps = 6;
   config.environment.gust_mps = 3;
   Flight flight(OpenSky(), config, PoseAt(265, 265, 80), 1, 0);
@@ -199,7 +206,7 @@ TEST(FlightTest, GustsMoveTheRobotButEveryLegEnds) {
 TEST(FlightTest, StaysInsideTheBox) {
   const Eigen::Vector3d size_m = OpenSky().SizeM();
   for (const Eigen::Vector3d& start : {Eigen::Vector3d(3, 5, 160), Eigen::Vector3d(527, 520, 163)}) {
-    Flight flight(OpenSky(), Config(), PoseAt(start.x(), start.y(), start.z()), 1, 0);
+    Flight flight(OpenSky(), FlownTimes(), PoseAt(start.x(), start.y(), start.z()), 1, 0);
     Recorder recorder;
     flight.SetTrace(&recorder);
     Stream draw(7, 0, Purpose::kMotion);
@@ -220,7 +227,7 @@ struct OtherAirframe {
 class AirframeFlightTest : public testing::TestWithParam<OtherAirframe> {};
 
 TEST_P(AirframeFlightTest, FliesItsLegs) {
-  Config config;
+  Config config = FlownTimes();
   config.robot.mass_kg = GetParam().mass_kg;
   config.robot.width_m = config.robot.depth_m = GetParam().width_m;
   config.robot.height_m = GetParam().height_m;
@@ -247,14 +254,14 @@ INSTANTIATE_TEST_SUITE_P(Sizes, AirframeFlightTest,
                          [](const auto& info) { return info.param.name; });
 
 TEST(FlightTest, RefusesWhatCannotFly) {
-  Config config;
+  Config config = FlownTimes();
   config.robot.mass_kg = 0.05;
   config.environment.wind_y_mps = 12;
   EXPECT_THROW(FlyOnce(config, Move(1, 0, 0)), UserError);
 }
 
 TEST(FlightTest, CommandsThatAreNotFiniteAreDefects) {
-  EXPECT_THROW(FlyOnce(Config(), Move(std::nan(""), 0, 0)), InternalError);
+  EXPECT_THROW(FlyOnce(FlownTimes(), Move(std::nan(""), 0, 0)), InternalError);
 }
 
 }  // namespace

@@ -51,6 +51,9 @@ class FakeStore final : public ResultStore {
     ids.insert(id);
   }
   void PutFailure(const RunId&, const std::string&) override { ++failures; }
+  std::vector<DamagedMission> FindDamage() override { return {}; }
+  void Remove(const std::vector<DamagedMission>&) override {}
+  void PutNetworks(const FlownNetworks&) override {}
   void Commit() override {
     ++commits;
     if (oldest_) longest_wait = std::max(longest_wait, steady_clock::now() - *oldest_);

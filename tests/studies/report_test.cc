@@ -67,7 +67,7 @@ TEST_F(ReportFilesTest, AreWrittenAndReplaced) {
   }
   int files = 0;
   for ([[maybe_unused]] const auto& entry : fs::directory_iterator(dir_ / "deep")) ++files;
-  EXPECT_EQ(files, 7);  // six files and the tables' folder; nothing unfinished is left behind
+  EXPECT_EQ(files, 8);  // seven files and the tables' folder; nothing unfinished is left behind
   for (const char* ending : {"md", "tex", "csv", "json"})
     EXPECT_FALSE(Content(dir_ / "deep/tables" / ("arms." + std::string(ending))).empty()) << ending;
 }

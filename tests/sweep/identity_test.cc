@@ -141,8 +141,8 @@ TEST(IdentityTest, AbsoluteWorldsStayAbsolute) {
 TEST(IdentityTest, DefaultWorldIsRelativeToTheSweepFile) {
   const ScratchFolder scratch;
   const SweepPlan plan = LoadSweep(scratch.Write("a/x.yaml", "name: x\nmissions: 1\n"));
-  EXPECT_EQ(plan.stages[0].arms[0].config.mission.world, scratch.Path() + "/a/worlds/ridges.yaml");
-  EXPECT_NE(plan.CanonicalText().find("\nmission.world=worlds/ridges.yaml\n"), std::string::npos);
+  EXPECT_EQ(plan.stages[0].arms[0].config.mission.world, scratch.Path() + "/a/worlds/paper.yaml");
+  EXPECT_NE(plan.CanonicalText().find("\nmission.world=worlds/paper.yaml\n"), std::string::npos);
 }
 
 TEST(IdentityTest, DoesNotDependOnHowTheSameStudyIsWritten) {
