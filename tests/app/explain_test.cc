@@ -59,11 +59,16 @@ std::string ByTheRules(const json& rules) {
   return rules["model_draw"].get<double>() < 0.5 ? "full" : "quantized";
 }
 
-// Timesteps of one mission after the other until both kinds were seen: where a coin decided, and where none was asked.
+// Timesteps of one mission after the other until both kinds were seen: where a coin decided, and where none was asked. In a
+// world whose base stations are near enough for that.
 TEST_F(ExplainTest, ARuleBasedTimestepShowsTheRulesInputs) {
+  const ScratchFolder near;
+  Fly("rbs.yaml", "--missions 4 --set mission.world=" ED3R_SOURCE_DIR "/sweeps/worlds/ridges.yaml",
+      near / "run");
   bool coin = false, no_coin = false;
   for (int i = 0; i < 12 && !(coin && no_coin); ++i) {
-    const std::string command = fmt::format("explain {} rbs/{} --step {}", Dir(), 1 + i / 4, 1 + i % 4);
+    const std::string command =
+        fmt::format("explain {} rbs/{} --step {}", (near / "run").string(), 1 + i / 4, 1 + i % 4);
     const CommandResult result = Ed3r(command + " --json");
     if (result.status == 2) continue;  // a short mission
     const json told = json::parse(result.out);

@@ -107,11 +107,11 @@ TEST_F(StoredFilesTest, OutputThatDoesNotArriveIsAnError) {
 TEST(FilesTest, AnEmptyPathIsRefused) {
   const std::string rbs = ED3R_SOURCE_DIR "/sweeps/rbs.yaml --missions 1 ";
   for (const std::string& command :
-       {"run " + rbs + "--out ''", "run " + rbs + "--out=", "run " + rbs + "--cache ''",
-        std::string("report x --out ''"), std::string("fit x --out ''"), std::string("frames --out ''"),
-        std::string("world x --picture ''"), std::string("replay x rbs/0 --out ''"),
-        std::string("compare x y --out ''")})
+       {"run " + rbs + "--out ''", "run " + rbs + "--cache ''", std::string("report x --out ''"),
+        std::string("fit x --out ''"), std::string("frames --out ''"), std::string("world x --picture ''"),
+        std::string("replay x rbs/0 --out ''"), std::string("compare x y --out ''")})
     ExpectOneLine(Ed3r(command), 2, "'' is not allowed; allowed: a path");
+  ExpectOneLine(Ed3r("run " + rbs + "--out="), 2, "--out: 1 required TEXT missing");
 }
 
 TEST(FilesTest, ArgumentsAreText) {
