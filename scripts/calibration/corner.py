@@ -1,4 +1,4 @@
-"""The set of worlds that are left, as a corner plot of the parameters that the evidence says most about."""
+"""The set of worlds that are kept, as a corner plot of the parameters that the evidence says most about."""
 
 import matplotlib
 
@@ -39,8 +39,7 @@ def draw(rows, matched, file):
                 ax.set_xticklabels([])
             if column > 0 or row == 0:
                 ax.set_yticklabels([])
-    figure.suptitle("Worlds that what the paper says of its random walk does not rule out (blue; the default: star), among all "
-                    "that were flown (grey)", y=0.92)
+    figure.suptitle("The worlds that are kept (blue; the default: star), among all that were flown (grey)", y=0.92)
     figure.savefig(file, dpi=80, bbox_inches="tight")
     plt.close(figure)
 
