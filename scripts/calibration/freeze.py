@@ -27,7 +27,7 @@ SWEEP = """# What of the paper holds in every world that its random walk does no
 name: matched
 seed: 20260101
 missions: {missions}
-set: {{training.learning_rate: 5e-5, training.epochs: 80, training.seeds: 2}}   # quick: a hundredth of the paper's steps
+set: {{training.learning_rate: 5e-5, training.epochs: 80, training.seeds: 2}}   # quick: the paper has 5e-6 and at most 2000
 sweep:                    # every world flies its own warm-up and trains its own networks
   list:
 {variants}
