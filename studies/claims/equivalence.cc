@@ -1,6 +1,5 @@
 #include "studies/claims/equivalence.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace ed3r {
@@ -8,28 +7,28 @@ namespace {
 
 constexpr double kNormal95 = 1.959964;
 
-double OrZero(double value) { return std::isnan(value) ? 0.0 : value; }
-
 }  // namespace
 
-bool IsPercentage(const Claim& claim) { return claim.unit.starts_with('%'); }
+bool IsPercentage(const Claim& claim) { return claim.unit.starts_with('%') || claim.unit == "points"; }
 
 double MarginOf(double paper, bool is_percentage) {
   return is_percentage ? kMarginPoints : kMarginShare * std::abs(paper);
 }
 
 double MarginOf(const Claim& claim, double paper) {
-  return std::max(MarginOf(paper, IsPercentage(claim)), claim.tolerance);
+  return claim.tolerance > 0 ? claim.tolerance : MarginOf(paper, IsPercentage(claim));
 }
 
 SizeDifference CompareSizes(double ours, double lo, double hi, double paper, double paper_sd, double rounding,
                             double margin) {
   const double difference = ours - paper;
-  const double of_paper = kNormal95 * OrZero(paper_sd);
+  const double of_paper = std::isnan(paper_sd) ? 0.0 : kNormal95 * paper_sd;
   SizeDifference result{.margin = margin,
-                        .lo = difference - std::hypot(OrZero(ours - lo), of_paper) - rounding,
-                        .hi = difference + std::hypot(OrZero(hi - ours), of_paper) + rounding};
-  if (-margin - rounding <= result.lo && result.hi <= margin + rounding)
+                        .lo = difference - std::hypot(ours - lo, of_paper) - rounding,
+                        .hi = difference + std::hypot(hi - ours, of_paper) + rounding};
+  if (std::isnan(result.lo) || std::isnan(result.hi))
+    result.verdict = SizeVerdict::kImprecise;
+  else if (-margin - rounding <= result.lo && result.hi <= margin + rounding)
     result.verdict = SizeVerdict::kEquivalent;
   else if (result.lo <= 0.0 && 0.0 <= result.hi)
     result.verdict = SizeVerdict::kImprecise;

@@ -9,14 +9,15 @@
 
 namespace ed3r {
 
-// 10 % of a size, 5 points of a percentage; or the claim's own tolerance, where its words are vaguer than that.
+// 10 % of a size, 5 points of a percentage. A claim whose words are vague ("about 3 %", "nearly double") brings the margin by
+// which they were read, wider or narrower.
 inline constexpr double kMarginShare = 0.10, kMarginPoints = 5.0;
 double MarginOf(double paper, bool is_percentage);
 double MarginOf(const Claim& claim, double paper);
 bool IsPercentage(const Claim& claim);
 
 // Missions of an arm in the paper. What chance leaves open of its numbers is taken from the spread of our missions.
-inline constexpr double kPaperMissions = 850;
+inline constexpr double kPaperMissions = 850, kPaperMissionsInP85 = 128;
 
 enum class SizeVerdict {
   kEquivalent,  // all of the interval lies within the margin
@@ -31,8 +32,8 @@ struct SizeDifference {
   SizeVerdict verdict = SizeVerdict::kDiffers;
 };
 
-// `ours` in [lo, hi] (95 %; NaN: known exactly); `paper_sd`: standard error of the paper's value (NaN: none); `rounding`: half
-// of its last printed digit.
+// `ours` in [lo, hi] (95 %; both `ours` where it is known exactly); `paper_sd`: standard error of the paper's value (NaN:
+// none); `rounding`: half of its last printed digit. Where lo or hi is NaN nothing is known: kImprecise with no interval.
 SizeDifference CompareSizes(double ours, double lo, double hi, double paper, double paper_sd, double rounding,
                             double margin);
 

@@ -61,7 +61,6 @@ Weight Weigh(const Formula& formula, double tolerance, const ResampledArms& arms
 // The paper's own value of a cell, give or take its rounding.
 struct Printed {
   double value = kNoNumber, half_unit = 0;
-  double largest = 0;  // of the values that it is made of
 };
 
 Printed PaperDifference(const Formula& leaf, const std::vector<Claim>& claims) {
@@ -70,7 +69,6 @@ Printed PaperDifference(const Formula& leaf, const std::vector<Claim>& claims) {
     const auto paper = FindPaperValue(claims, cell.arm, MetricDefinitions()[cell.metric].name);
     if (!paper) return kNoNumber;
     printed.half_unit += paper->half_unit;
-    printed.largest = std::max(printed.largest, std::abs(paper->value));
     return paper->value;
   });
   return printed;
@@ -79,6 +77,12 @@ Printed PaperDifference(const Formula& leaf, const std::vector<Claim>& claims) {
 bool HasAlternatives(const Formula& formula) {
   return formula.kind == Formula::Kind::kAny ||
          std::any_of(formula.of.begin(), formula.of.end(), HasAlternatives);
+}
+
+// A product or quotient of percentages is none.
+bool IsLinear(const Quantity& quantity) {
+  return quantity.kind != Quantity::Kind::kMultiply && quantity.kind != Quantity::Kind::kDivide &&
+         std::all_of(quantity.of.begin(), quantity.of.end(), IsLinear);
 }
 
 bool SizesAgree(const Formula& formula, const ResampledArms& arms, const std::vector<Claim>& claims) {
@@ -91,10 +95,10 @@ bool SizesAgree(const Formula& formula, const ResampledArms& arms, const std::ve
     const Resampled ours = arms.Of(difference);
     const Uncertainty uncertainty = UncertaintyOf(ours);
     const std::vector<Cell> cells = CellsOf(difference);
-    const bool percentage = MetricDefinitions()[cells.front().metric].unit == "%";
+    const bool percentage = MetricDefinitions()[cells.front().metric].unit == "%" && IsLinear(difference);
     const SizeDifference size = CompareSizes(ours.value, uncertainty.lo, uncertainty.hi, paper.value,
                                              uncertainty.sd_missions * arms.ToPaperSize(cells),
-                                             paper.half_unit, MarginOf(paper.largest, percentage));
+                                             paper.half_unit, MarginOf(paper.value, percentage));
     if (size.verdict != SizeVerdict::kEquivalent) return false;
     any = true;
   }
@@ -104,6 +108,26 @@ bool SizesAgree(const Formula& formula, const ResampledArms& arms, const std::ve
 bool IsPlainCell(const Quantity& quantity) { return quantity.kind == Quantity::Kind::kCell; }
 
 bool IsP85(std::string_view arm) { return arm.ends_with("-p85"); }
+
+// The chance of a share at the paper's own value: ours may be one that our missions happen not to show, or that leaves less or
+// more to chance than the paper's. A ratio of sums (wasted energy) keeps what it varies beyond a plain share of missions.
+double SdOfShareAt(double paper_pct, double ours_pct, double sd_of_ours, double missions) {
+  const auto variance = [](double pct) {
+    const double share = std::clamp(pct / 100.0, 0.0, 1.0);
+    return share * (1.0 - share);
+  };
+  if (std::isnan(sd_of_ours) || variance(ours_pct) == 0.0)
+    return 100.0 * std::sqrt(variance(paper_pct) / missions);
+  return sd_of_ours * std::sqrt(variance(paper_pct) / variance(ours_pct));
+}
+
+double PaperSdOf(const Cell& cell, double paper, double ours, double sd_of_ours) {
+  const double missions = IsP85(cell.arm) ? kPaperMissionsInP85 : kPaperMissions;
+  const MetricDefinition& metric = MetricDefinitions()[cell.metric];
+  if (std::isnan(paper)) return sd_of_ours;
+  if (metric.estimate == Estimate::kRate) return SdOfShareAt(paper, kNoNumber, kNoNumber, missions);
+  return metric.name == "wer_pct" ? SdOfShareAt(paper, ours, sd_of_ours, missions) : sd_of_ours;
+}
 
 }  // namespace
 
@@ -132,15 +156,13 @@ Evidence WeighNumber(const Claim& claim, const Quantity& quantity, const Resampl
   if (IsPlainCell(quantity) && !IsP85(quantity.cell.arm)) {
     const MetricValue& ours = arms.TableValue(quantity.cell);
     evidence.ours = ours.value, evidence.lo = ours.lo, evidence.hi = ours.hi;
-    // A rate that our missions happen not to show has its chance in the paper's all the same.
-    if (MetricDefinitions()[quantity.cell.metric].estimate == Estimate::kRate &&
-        !std::isnan(evidence.paper)) {
-      const double share = std::clamp(evidence.paper / 100.0, 0.0, 1.0);
-      evidence.paper_sd = 100.0 * std::sqrt(share * (1.0 - share) / kPaperMissions);
-    }
+    evidence.exact = MetricDefinitions()[quantity.cell.metric].estimate == Estimate::kMaximum;
+    evidence.paper_sd = PaperSdOf(quantity.cell, evidence.paper, evidence.ours, evidence.paper_sd);
     return evidence;
   }
   evidence.ours = number.value, evidence.lo = uncertainty.lo, evidence.hi = uncertainty.hi;
+  if (IsPlainCell(quantity))
+    evidence.paper_sd = PaperSdOf(quantity.cell, evidence.paper, evidence.ours, evidence.paper_sd);
   if (claim.kind != "ratio") {
     // Student's t may leave what is possible.
     if (evidence.lo < 0) evidence.lo = 0;

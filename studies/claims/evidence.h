@@ -14,13 +14,13 @@ namespace ed3r {
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 struct Evidence {
-  double ours = kNoNumber, lo = kNoNumber, hi = kNoNumber;
+  double ours = kNoNumber, lo = kNoNumber, hi = kNoNumber;  // 95 %; NaN: too few missions to tell
+  bool exact = false;  // a fact of these missions that has no interval: the longest of them
   double paper = kNoNumber;
   // Of the claim's direction and of the opposite; only where it has one (orders, comparisons).
   bool directional = false;
   double p_for = kNoNumber, p_against = kNoNumber;
-  bool sizes_agree =
-      false;  // orders: every difference that the paper prints is equivalent to ours, and there is one
+  bool sizes_agree = false;  // orders: the paper prints every difference, and all are equivalent to ours
   // Standard error over missions, as many as flew and as many as the paper's; not of orders.
   double own_sd = kNoNumber, paper_sd = kNoNumber;
   std::string detail;  // orders: the least certain part

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "engine/core/check.h"
 #include "studies/metrics/definitions.h"
@@ -94,7 +95,36 @@ bool HasSeveralMetrics(const std::set<Cell>& cells) {
                      [&](const Cell& c) { return c.metric != cells.begin()->metric; });
 }
 
+std::string Canonical(const Formula& formula);
+
+// "all" within "all" is one "all".
+void CollectParts(const Formula& formula, Formula::Kind kind, std::set<std::string>& parts) {
+  for (const Formula& part : formula.of) {
+    if (part.kind == kind || part.of.size() == 1)
+      CollectParts(part, kind, parts);
+    else
+      parts.insert(Canonical(part));
+  }
+}
+
+std::string Canonical(const Formula& formula) {
+  if (formula.of.empty()) {
+    std::string left = Render(formula.left, true, false), right = Render(formula.right, true, false);
+    if (formula.kind == Formula::Kind::kLess) return fmt::format("{} < {}", left, right);
+    if (right < left) std::swap(left, right);
+    return fmt::format("{} ~ {}", left, right);
+  }
+  std::set<std::string> parts;
+  CollectParts(formula, formula.kind, parts);
+  if (parts.size() == 1) return *parts.begin();
+  return fmt::format("{}({})", formula.kind == Formula::Kind::kAll ? "all" : "any", fmt::join(parts, "; "));
+}
+
 }  // namespace
+
+std::string CanonicalText(const Expression& expression) {
+  return expression.is_quantity ? Render(expression.quantity, true, false) : Canonical(expression.formula);
+}
 
 double ValueOf(const Quantity& quantity, const CellValue& value) {
   switch (quantity.kind) {

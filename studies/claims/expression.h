@@ -78,6 +78,9 @@ std::vector<Cell> CellsOf(const Quantity& quantity);
 // kLess and kSimilar formulas in it, from left to right.
 std::vector<const Formula*> LeavesOf(const Formula& formula);
 
+// The same for expressions that say the same: "a > b" and "b < a", parts in any order, metrics named or not.
+std::string CanonicalText(const Expression& expression);
+
 // In the notation above, metrics left out where all are the same.
 std::string TextOf(const Quantity& quantity);
 std::string TextOf(const Formula& leaf);

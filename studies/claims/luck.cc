@@ -53,9 +53,12 @@ Luck LuckOf(const JudgedClaim& judged) {
   double spread = 0.0;
   for (const double value : values) spread += (value - mean) * (value - mean) / (count - 1.0);
   // Each network's value holds the chance of its own missions; the paper's holds that of 850.
-  double variance = spread;
-  if (!own_variances.empty()) variance = std::max(0.0, spread - Mean(own_variances)) + Mean(paper_variances);
-  const double reach = StudentT95(count - 1.0) * std::sqrt(variance + spread / count);
+  double variance = spread, of_a_network = spread;
+  if (!own_variances.empty()) {
+    variance = std::max(0.0, spread - Mean(own_variances)) + Mean(paper_variances);
+    of_a_network = std::max(spread, Mean(own_variances));  // few networks may lie close by chance
+  }
+  const double reach = StudentT95(count - 1.0) * std::sqrt(variance + of_a_network / count);
   const double lo = scale.From(mean - reach) - paper->half_unit;
   const double hi = scale.From(mean + reach) + paper->half_unit;
   if (paper->value < lo || hi < paper->value) return Luck::kNone;

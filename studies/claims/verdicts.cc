@@ -39,13 +39,22 @@ std::string Deviation(const Judgement& judged) {
   return fmt::format("ours - paper = {:+.3g}{}", difference, relative);
 }
 
-SizeDifference SizeOf(const Claim& claim, Judgement& judged) {
+// None where our missions are too few for an interval.
+std::optional<SizeVerdict> SizeOf(const Claim& claim, bool exact, Judgement& judged) {
   const PaperValue paper = *PaperValueOf(claim);
-  const SizeDifference size = CompareSizes(judged.ours, judged.lo, judged.hi, paper.value, judged.paper_sd,
-                                           paper.half_unit, MarginOf(claim, paper.value));
+  const double lo = exact ? judged.ours : judged.lo, hi = exact ? judged.ours : judged.hi;
+  const SizeDifference size = CompareSizes(judged.ours, lo, hi, paper.value, judged.paper_sd, paper.half_unit,
+                                           MarginOf(claim, paper.value));
   judged.difference_lo = size.lo, judged.difference_hi = size.hi, judged.margin = size.margin;
   judged.why = Deviation(judged);
-  return size;
+  if (std::isnan(size.lo) || std::isnan(size.hi)) {
+    judged.verdict = Verdict::kNotMeasured;
+    judged.why += "; too few missions for an interval";
+    return std::nullopt;
+  }
+  if (size.verdict == SizeVerdict::kEquivalent && (size.lo > 0 || size.hi < 0))
+    judged.why += "; surely not the same, and within the margin";
+  return size.verdict;
 }
 
 void DecideOrder(const Evidence& evidence, bool similarity, Judgement& judged) {
@@ -61,17 +70,21 @@ void DecideOrder(const Evidence& evidence, bool similarity, Judgement& judged) {
 }
 
 void DecideComparison(const Claim& claim, Judgement& judged) {
-  const SizeDifference size = SizeOf(claim, judged);
-  const bool certain = judged.p_holm < kLevel;
-  if (size.verdict == SizeVerdict::kEquivalent)
+  const auto size = SizeOf(claim, false, judged);
+  if (!size) return;
+  if (judged.p_against_holm < kLevel) {
+    judged.verdict = Verdict::kDiffers;
+    judged.why += "; the opposite is significant";
+  } else if (*size == SizeVerdict::kEquivalent) {
     judged.verdict = Verdict::kEquivalent;
-  else if (certain)
+  } else if (judged.p_holm < kLevel) {
     judged.verdict = Verdict::kDirectionHolds;
-  else
-    judged.verdict = size.verdict == SizeVerdict::kImprecise ? Verdict::kImprecise : Verdict::kDiffers;
+  } else {
+    judged.verdict = *size == SizeVerdict::kImprecise ? Verdict::kImprecise : Verdict::kDiffers;
+  }
 }
 
-void DecideNumber(const Claim& claim, Judgement& judged) {
+void DecideNumber(const Claim& claim, bool exact, Judgement& judged) {
   if (!PaperValueOf(claim)) {  // "n/a"
     judged.verdict = std::isnan(judged.ours) ? Verdict::kReproduced : Verdict::kDiffers;
     judged.why = "the paper has none";
@@ -82,7 +95,9 @@ void DecideNumber(const Claim& claim, Judgement& judged) {
     judged.why = "no mission of this run has a value";
     return;
   }
-  switch (SizeOf(claim, judged).verdict) {
+  const auto size = SizeOf(claim, exact, judged);
+  if (!size) return;
+  switch (*size) {
     case SizeVerdict::kEquivalent:
       judged.verdict = claim.source == "construction" ? Verdict::kReproduced : Verdict::kEquivalent;
       break;
@@ -113,17 +128,18 @@ bool AsksNetworks(const ParsedClaim& parsed, const ResampledArms& arms) {
 }
 
 // Claims that say the same of the same have the same key; facts of the set-up are each their own.
-std::string KeyOf(const Claim& claim) {
-  if (claim.kind == "setup" || !claim.unmeasured.empty()) return claim.id;
-  const std::string& what = claim.comparison.empty() ? claim.strategy : claim.comparison;
-  return fmt::format("{}|{}|{}|{}", claim.kind, what, claim.metric, claim.paper_value);
+std::string KeyOf(const ParsedClaim& parsed) {
+  const Claim& claim = *parsed.claim;
+  if (!parsed.expression) return claim.id;
+  return fmt::format("{}|{}|{}|{}", claim.kind, CanonicalText(*parsed.expression), claim.paper_value,
+                     claim.tolerance);
 }
 
-void MarkRepeats(ClaimStudy& study) {
+void MarkRepeats(const std::vector<ParsedClaim>& parsed, ClaimStudy& study) {
   std::map<std::string, std::string> first;
-  for (JudgedClaim& judged : study.claims) {
-    const auto [found, fresh] = first.try_emplace(KeyOf(judged.claim), judged.claim.id);
-    if (!fresh) judged.repeats = found->second;
+  for (std::size_t i = 0; i < parsed.size(); ++i) {
+    const auto [found, fresh] = first.try_emplace(KeyOf(parsed[i]), parsed[i].claim->id);
+    if (!fresh) study.claims[i].repeats = found->second;
   }
 }
 
@@ -174,8 +190,7 @@ class Round {
     std::vector<std::size_t> member(parsed_.size());
     for (std::size_t i = 0; i < parsed_.size(); ++i) {
       if (!evidence_[i] || !evidence_[i]->directional) continue;
-      const Claim& claim = *parsed_[i].claim;
-      const auto [found, fresh] = family.try_emplace(claim.metric + ':' + claim.comparison, p_for.size());
+      const auto [found, fresh] = family.try_emplace(CanonicalText(*parsed_[i].expression), p_for.size());
       member[i] = found->second;
       if (fresh) p_for.push_back(evidence_[i]->p_for), p_against.push_back(evidence_[i]->p_against);
     }
@@ -201,7 +216,7 @@ class Round {
     else if (claim.kind == "ratio")
       DecideComparison(claim, judged);
     else
-      DecideNumber(claim, judged);
+      DecideNumber(claim, evidence.exact, judged);
     if (claim.inconsistent.empty() || judged.verdict == Verdict::kNotMeasured) return;
     judged.verdict = Verdict::kPaperInconsistent;
     judged.why = claim.inconsistent;
@@ -297,7 +312,10 @@ ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData
   Round round(parsed, claims, arms, all);
   const std::vector<Judgement> judged = round.Judge();
   study.family = round.Family();
-  for (std::size_t i = 0; i < claims.size(); ++i) study.claims.push_back({claims[i], judged[i], {}});
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    JudgedClaim& claim = study.claims.emplace_back();
+    claim.claim = claims[i], claim.all = judged[i];
+  }
   for (int network = 0; study.networks > 1 && network < study.networks; ++network) {
     const std::vector<ArmData> part = all.FlownBy(network);
     const std::vector<Judgement> alone = Round(parsed, claims, part, ResampledArms(part, cells)).Judge();
@@ -308,7 +326,7 @@ ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData
     study.claims[i].asks_networks = AsksNetworks(parsed[i], all);
     study.claims[i].luck = LuckOf(study.claims[i]);
   }
-  MarkRepeats(study);
+  MarkRepeats(parsed, study);
   return study;
 }
 

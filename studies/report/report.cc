@@ -73,6 +73,7 @@ nlohmann::ordered_json ReportJson(const Report& report) {
   if (!report.mixed_code.empty()) json["mixed_code"] = report.mixed_code;
   json.update(ResultJson(report.arms, PaperClaims()));
   json["generalisation"] = GeneralisationJson(report.generalisation);
+  json["look_forward"] = LookForwardJson(report.look_forward);
   json["claims"] = VerdictJson(report.claims);
   return json;
 }

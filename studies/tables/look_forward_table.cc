@@ -12,8 +12,19 @@
 namespace ed3r {
 namespace {
 
-constexpr const char* kWords[] = {"the group's worst mission", "the arm's worst mission",
-                                  "the worst mission of all arms"};
+using Json = nlohmann::ordered_json;
+
+struct Words {
+  const char *key, *text;
+};
+constexpr Words kWords[] = {{"group", "the group's worst mission"},
+                            {"arm", "the arm's worst mission"},
+                            {"all_arms", "the worst mission of all arms"},
+                            {"arm_timestep", "the arm's worst timestep"},
+                            {"all_timesteps", "the worst timestep of all arms"}};
+static_assert(std::size(kWords) == std::size(kWorstOfs));
+
+constexpr const char* kAblations[] = {"ablation-1", "ablation-2", "ablation-3", "ablation-4"};
 
 double MeanPercent(const std::vector<double>& accuracies) {
   double sum = 0.0;
@@ -37,48 +48,90 @@ LookForward ErrorsOf(const ArmData& arm) {
   return result;
 }
 
+// By network.
+WorstErrors WorstTimestepsOf(std::span<const MissionRecord> missions) {
+  WorstErrors worst;
+  for (const MissionRecord& m : missions)
+    if (m.predicted_timesteps > 0) worst[m.network] = std::max(worst[m.network], m.largest_reward_error);
+  return worst;
+}
+
+void Widen(const WorstErrors& errors, WorstErrors& worst) {
+  for (const auto& [network, error] : errors) worst[network] = std::max(worst[network], error);
+}
+
 const LookForward* Find(const std::vector<LookForward>& arms, std::string_view name) {
   const auto found = std::find_if(arms.begin(), arms.end(), [&](const auto& arm) { return arm.arm == name; });
   return found == arms.end() ? nullptr : &*found;
 }
 
 std::string Cell(double value, const char* format) {
-  return Pad(std::isnan(value) ? "–" : fmt::format(fmt::runtime(format), value), 11, Align::kRight);
+  return Pad(std::isnan(value) ? "–" : fmt::format(fmt::runtime(format), value), 9, Align::kRight);
+}
+
+std::string CsvCell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
+
+std::string Answer(const std::optional<bool>& answer) { return !answer ? "–" : *answer ? "yes" : "no"; }
+
+std::string PatternText(const std::vector<LookForward>& arms) {
+  std::string text = Pad("LF divided by", 33, Align::kLeft);
+  for (const char* heading : {"P85 > mean", "ablations > ED³R", "ECD²R > ED³R"})
+    text += Pad(heading, 19, Align::kRight);
+  text += "\n";
+  for (const WorstOf definition : kWorstOfs) {
+    const LookForwardPattern pattern = PatternOf(arms, definition);
+    text += Pad(kWords[static_cast<std::size_t>(definition)].text, 33, Align::kLeft);
+    for (const auto& part : {pattern.p85_above_mean, pattern.ablations_above_ed3r, pattern.ecd2r_above_ed3r})
+      text += Pad(Answer(part), 19, Align::kRight);
+    text += "\n";
+  }
+  return text;
 }
 
 }  // namespace
 
 std::vector<LookForward> LookForwardOf(std::span<const ArmData> arms) {
-  WorstErrors of_all;
-  for (const ArmData& arm : arms)
-    for (const auto& [network, error] : WorstErrorsOf(arm.missions))
-      of_all[network] = std::max(of_all[network], error);
+  WorstErrors of_all, of_all_timesteps;
+  for (const ArmData& arm : arms) {
+    Widen(WorstErrorsOf(arm.missions), of_all);
+    Widen(WorstTimestepsOf(arm.missions), of_all_timesteps);
+  }
   std::vector<LookForward> result;
   for (const ArmData& arm : arms) {
     LookForward row = ErrorsOf(arm);
     if (row.missions == 0) continue;
     const ArmData group = P85Group(arm);
     const WorstErrors of_arm = WorstErrorsOf(arm.missions), of_group = WorstErrorsOf(group.missions);
-    const WorstErrors* worst[] = {&of_arm, &of_arm, &of_all};
-    const WorstErrors* p85_worst[] = {&of_group, &of_arm, &of_all};
+    const WorstErrors of_arm_timesteps = WorstTimestepsOf(arm.missions);
+    const WorstErrors* worst[] = {&of_arm, &of_arm, &of_all, &of_arm_timesteps, &of_all_timesteps};
     for (std::size_t i = 0; i < std::size(kWorstOfs); ++i) {
       row.accuracy[i] = MeanPercent(LookForwardAccuracies(arm.missions, *worst[i]));
-      row.p85_accuracy[i] = MeanPercent(LookForwardAccuracies(group.missions, *p85_worst[i]));
+      const bool own = kWorstOfs[i] == WorstOf::kGroup;
+      row.p85_accuracy[i] = MeanPercent(LookForwardAccuracies(group.missions, own ? of_group : *worst[i]));
     }
     result.push_back(std::move(row));
   }
   return result;
 }
 
-bool GivesThePapersPattern(const std::vector<LookForward>& arms, WorstOf definition) {
+LookForwardPattern PatternOf(const std::vector<LookForward>& arms, WorstOf definition) {
   const auto i = static_cast<std::size_t>(definition);
-  const LookForward* ed3r = Find(arms, "ed3r-75");
-  if (ed3r == nullptr || !(ed3r->p85_accuracy[i] > ed3r->accuracy[i])) return false;
-  for (const char* name : {"ablation-1", "ablation-2", "ablation-3", "ablation-4"}) {
-    const LookForward* ablation = Find(arms, name);
-    if (ablation == nullptr || !(ablation->accuracy[i] > ed3r->accuracy[i])) return false;
+  const LookForward *ed3r = Find(arms, "ed3r-75"), *ecd2r = Find(arms, "ecd2r");
+  LookForwardPattern pattern;
+  if (ed3r == nullptr) return pattern;
+  const auto rises = [i](const LookForward& arm) { return arm.p85_accuracy[i] > arm.accuracy[i]; };
+  if (ecd2r != nullptr) {
+    pattern.p85_above_mean = rises(*ed3r) && rises(*ecd2r);
+    pattern.ecd2r_above_ed3r = ecd2r->accuracy[i] > ed3r->accuracy[i];
   }
-  return true;
+  bool above = true;
+  for (const char* name : kAblations) {
+    const LookForward* ablation = Find(arms, name);
+    if (ablation == nullptr) return pattern;
+    above = above && ablation->accuracy[i] > ed3r->accuracy[i];
+  }
+  pattern.ablations_above_ed3r = above;
+  return pattern;
 }
 
 std::string LookForwardText(const std::vector<LookForward>& arms) {
@@ -86,7 +139,7 @@ std::string LookForwardText(const std::vector<LookForward>& arms) {
   double largest = 0.0;
   std::string text = Pad("look-forward errors", 21, Align::kLeft);
   for (const char* heading : {"mean", "mission", "timestep", "LF, arm", "P85", "LF, all", "P85"})
-    text += Pad(heading, 11, Align::kRight);
+    text += Pad(heading, 9, Align::kRight);
   text += "\n" + Rule(DisplayWidth(text)) + "\n";
   for (const LookForward& row : arms) {
     largest = std::max(largest, row.largest_mission);
@@ -95,31 +148,56 @@ std::string LookForwardText(const std::vector<LookForward>& arms) {
             Cell(row.accuracy[1], "{:.1f}") + Cell(row.p85_accuracy[1], "{:.1f}") +
             Cell(row.accuracy[2], "{:.1f}") + Cell(row.p85_accuracy[2], "{:.1f}") + "\n";
   }
-  std::string pattern;
-  for (const WorstOf definition : kWorstOfs)
-    if (GivesThePapersPattern(arms, definition))
-      pattern += (pattern.empty() ? "" : "; ") + std::string(kWords[static_cast<std::size_t>(definition)]);
-  return text + Wrap(fmt::format("Absolute errors of the predicted reward: a mission's mean, the largest "
-                                 "such mean, the largest of one "
-                                 "timestep; the largest mean of all arms is {:.3f}. LF accuracy in % (R29) "
-                                 "by the worst mission of the "
-                                 "arm, and of all arms. The paper's pattern, P85 above the mean and the "
-                                 "ablations above ED³R, comes "
-                                 "out with {}.",
-                                 largest, pattern.empty() ? "none of the definitions" : pattern),
-                     "", kTerminalWidth);
+  text += Wrap(
+      fmt::format("Absolute errors of the predicted reward: a mission's mean, the largest such mean, "
+                  "the largest of one timestep; the largest mean of all arms is {:.3f}. LF accuracy in % "
+                  "(R29) by the worst mission of the arm, and of all arms, of the network that flew.",
+                  largest),
+      "", kTerminalWidth);
+  const bool asked = PatternOf(arms, WorstOf::kArm).p85_above_mean.has_value();
+  return asked ? text + "\nWhich definition of LF accuracy gives what the paper prints?\n" + PatternText(arms)
+               : text;
 }
 
 std::string LookForwardCsv(const std::vector<LookForward>& arms) {
-  std::string csv =
-      "arm,missions,mean_error,largest_mission,largest_timestep,accuracy_group,accuracy_arm,accuracy_all_"
-      "arms,"
-      "p85_accuracy_group,p85_accuracy_arm,p85_accuracy_all_arms\n";
-  for (const LookForward& row : arms)
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", row.arm, row.missions, row.mean_error,
-                       row.largest_mission, row.largest_timestep, row.accuracy[0], row.accuracy[1],
-                       row.accuracy[2], row.p85_accuracy[0], row.p85_accuracy[1], row.p85_accuracy[2]);
+  std::string csv = "arm,missions,mean_error,largest_mission,largest_timestep";
+  for (const char* of : {"accuracy_", "p85_accuracy_"})
+    for (const Words& words : kWords) csv += fmt::format(",{}{}", of, words.key);
+  csv += '\n';
+  for (const LookForward& row : arms) {
+    csv += fmt::format("{},{},{},{},{}", row.arm, row.missions, row.mean_error, row.largest_mission,
+                       row.largest_timestep);
+    for (const auto& accuracies : {row.accuracy, row.p85_accuracy})
+      for (std::size_t i = 0; i < std::size(kWorstOfs); ++i) csv += ',' + CsvCell(accuracies[i]);
+    csv += '\n';
+  }
   return csv;
+}
+
+Json LookForwardJson(const std::vector<LookForward>& arms) {
+  Json json = {{"arms", Json::object()}, {"pattern", Json::object()}};
+  for (const LookForward& row : arms) {
+    Json accuracy = Json::object(), p85_accuracy = Json::object();
+    for (std::size_t i = 0; i < std::size(kWorstOfs); ++i) {
+      accuracy[kWords[i].key] = row.accuracy[i];
+      p85_accuracy[kWords[i].key] = row.p85_accuracy[i];
+    }
+    json["arms"][row.arm] = {{"missions", row.missions},
+                             {"mean_error", row.mean_error},
+                             {"largest_mission", row.largest_mission},
+                             {"largest_timestep", row.largest_timestep},
+                             {"accuracy_pct", accuracy},
+                             {"p85_accuracy_pct", p85_accuracy}};
+  }
+  const auto part = [](const std::optional<bool>& answer) { return answer ? Json(*answer) : Json(nullptr); };
+  for (const WorstOf definition : kWorstOfs) {
+    const LookForwardPattern pattern = PatternOf(arms, definition);
+    json["pattern"][kWords[static_cast<std::size_t>(definition)].key] = {
+        {"p85_above_mean", part(pattern.p85_above_mean)},
+        {"ablations_above_ed3r", part(pattern.ablations_above_ed3r)},
+        {"ecd2r_above_ed3r", part(pattern.ecd2r_above_ed3r)}};
+  }
+  return json;
 }
 
 }  // namespace ed3r

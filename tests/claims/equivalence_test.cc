@@ -38,9 +38,14 @@ TEST(EquivalenceTest, UnevenIntervalsKeepTheirSides) {
   EXPECT_NEAR(size.hi, 2.5, 1e-12);
 }
 
-TEST(EquivalenceTest, WithoutIntervalsTheNumbersThemselvesCompare) {
-  EXPECT_EQ(CompareSizes(10.9, kNone, kNone, 10, kNone, 0, 1).verdict, SizeVerdict::kEquivalent);
-  EXPECT_EQ(CompareSizes(11.1, kNone, kNone, 10, kNone, 0, 1).verdict, SizeVerdict::kDiffers);
+TEST(EquivalenceTest, ExactNumbersCompareThemselves) {
+  EXPECT_EQ(CompareSizes(10.9, 10.9, 10.9, 10, kNone, 0, 1).verdict, SizeVerdict::kEquivalent);
+  EXPECT_EQ(CompareSizes(11.1, 11.1, 11.1, 10, kNone, 0, 1).verdict, SizeVerdict::kDiffers);
+}
+
+TEST(EquivalenceTest, AMissingIntervalIsNotCertainty) {
+  EXPECT_EQ(CompareSizes(10.1, kNone, kNone, 10, kNone, 0, 1).verdict, SizeVerdict::kImprecise);
+  EXPECT_EQ(CompareSizes(99, kNone, 99.5, 10, kNone, 0, 1).verdict, SizeVerdict::kImprecise);
 }
 
 TEST(EquivalenceTest, Margins) {
@@ -49,6 +54,10 @@ TEST(EquivalenceTest, Margins) {
   Claim claim;
   claim.unit = "% of missions", claim.tolerance = 7;
   EXPECT_DOUBLE_EQ(MarginOf(claim, 85), 7.0);
+  claim.tolerance = 1;  // words may be sharper than the rule as well
+  EXPECT_DOUBLE_EQ(MarginOf(claim, 3), 1.0);
+  claim.unit = "points", claim.tolerance = 0;
+  EXPECT_DOUBLE_EQ(MarginOf(claim, 20.36), 5.0);
   claim.unit = "kJ";
   EXPECT_DOUBLE_EQ(MarginOf(claim, 85), 8.5);
 }

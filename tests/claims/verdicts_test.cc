@@ -213,6 +213,48 @@ TEST(VerdictsTest, Comparisons) {
   EXPECT_EQ(VerdictOf(Reduction("ed3r-75 / ecd2r", "20"), lucky), Verdict::kImprecise);
 }
 
+// A reduction that the paper prints and an increase that is certain: within the margin or not, that is no agreement.
+TEST(VerdictsTest, AComparisonWhoseOppositeIsCertainDiffers) {
+  const SyntheticDesign quiet{.missions = 4200, .networks = 1, .places = 28, .own_noise = 0.01};
+  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20.4}, quiet), MakeArm({"ecd2r", 20}, quiet)};
+  const Judgement judged = JudgeOne(Reduction("ed3r-75 / ecd2r", "1"), arms).all;
+  EXPECT_EQ(judged.verdict, Verdict::kDiffers);
+  EXPECT_NE(judged.why.find("the opposite is significant"), std::string::npos) << judged.why;
+}
+
+TEST(VerdictsTest, PointsArePercentages) {
+  Claim claim = Reduction("ed3r-75 / rbs", "20");
+  claim.metric = "msr_pct", claim.comparison = "ed3r-75 - rbs", claim.unit = "points";
+  EXPECT_EQ(JudgeOne(claim, ThreeArms()).all.margin, 5.0);
+}
+
+// 10 % of the difference that the paper prints, not of the numbers that it is made of.
+TEST(VerdictsTest, AnOrderIsReproducedByItsDifferences) {
+  SyntheticDesign many;
+  many.missions = 4200;
+  many.own_noise = 0.01;
+  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20}, many), MakeArm({"ecd2r", 25}, many)};
+  const auto verdict = [&](const std::string& ecd2r) {
+    return JudgeClaims({Order("ed3r-75 < ecd2r"), Energy("ed3r-75", "20"), Energy("ecd2r", ecd2r)}, arms)
+        .claims[0]
+        .all.verdict;
+  };
+  EXPECT_EQ(verdict("25.0"), Verdict::kReproduced);
+  EXPECT_EQ(verdict("24.0"), Verdict::kDirectionHolds);  // 5 kJ of difference for 4
+}
+
+TEST(VerdictsTest, ThePapersChanceInSharesIsThatOfItsOwnMissions) {
+  const std::vector<ArmData> arms = ThreeArms();
+  const Judgement all = JudgeOne(Value("rbs", "msr_pct", "76.82", "%"), arms).all;
+  EXPECT_NEAR(all.paper_sd, 100 * std::sqrt(0.7682 * 0.2318 / 850), 1e-9);
+  const Judgement p85 = JudgeOne(Value("rbs-p85", "msr_pct", "73.44", "%"), arms).all;
+  EXPECT_NEAR(p85.paper_sd, 100 * std::sqrt(0.7344 * 0.2656 / 128), 1e-9);
+  // No failure of ours wastes nothing; a tenth of the paper's energy was wasted all the same.
+  const Judgement wasted = JudgeOne(Value("ed3r-75", "wer_pct", "10.26", "%"), arms).all;
+  EXPECT_EQ(wasted.ours, 0);
+  EXPECT_NEAR(wasted.paper_sd, 100 * std::sqrt(0.1026 * 0.8974 / 850), 1e-9);
+}
+
 TEST(VerdictsTest, PairingMakesSmallDifferencesCertain) {
   // Hardness varies by a third between missions, an arm's own noise is small: 1 % of difference shows only in
   // pairs.
@@ -321,6 +363,9 @@ TEST(VerdictsTest, EmptyArmsAndEmptyRuns) {
   one.missions = 1;
   const std::vector<ArmData> tiny = {MakeArm({"ed3r-75", 20}, one), MakeArm({"ecd2r", 90}, one)};
   EXPECT_NO_THROW(JudgeClaims(PaperClaims(), tiny));
+  const Judgement judged = JudgeOne(Energy("ed3r-75", "20"), tiny).all;
+  EXPECT_EQ(judged.verdict, Verdict::kNotMeasured);
+  EXPECT_NE(judged.why.find("too few missions"), std::string::npos) << judged.why;
 }
 
 TEST(VerdictsTest, RepeatedClaimsAreOneQuestion) {
@@ -341,6 +386,16 @@ TEST(VerdictsTest, RepeatedClaimsCountOnce) {
   EXPECT_TRUE(study.claims[2].repeats.empty());
   EXPECT_EQ(CountDistinct(study), 2);
   EXPECT_EQ(CountVerdicts(study), (std::map<Verdict, int>{{Verdict::kDiffers, 2}}));
+}
+
+TEST(VerdictsTest, AnOrderReadFromTheOtherSideIsTheSameQuestion) {
+  Claim flipped = Order("rbs > ecd2r; total_energy_kj(ecd2r) > total_energy_kj(ed3r-75)");
+  flipped.id = "W";
+  const ClaimStudy study =
+      JudgeClaims({Order("ed3r-75 < ecd2r < rbs"), flipped, Order("rbs < ecd2r")}, ThreeArms());
+  EXPECT_EQ(study.claims[1].repeats, "V");
+  EXPECT_TRUE(study.claims[2].repeats.empty());
+  EXPECT_EQ(study.family, 2);
 }
 
 TEST(VerdictsTest, UnreadableClaimsAreErrors) {

@@ -36,18 +36,40 @@ TEST(LookForwardTest, ErrorsAndThreeDefinitions) {
   EXPECT_NEAR(rows[0].accuracy[static_cast<int>(WorstOf::kAllArms)], 75.0, 1e-9);
   EXPECT_NEAR(rows[0].p85_accuracy[static_cast<int>(WorstOf::kGroup)], 0.0, 1e-9);
   EXPECT_NEAR(rows[0].p85_accuracy[static_cast<int>(WorstOf::kArm)], 75.0, 1e-9);
+  // Single timesteps are off by three times the mean: 1.2 at most here, 2.4 in the other arm.
+  EXPECT_NEAR(rows[0].accuracy[static_cast<int>(WorstOf::kArmTimestep)], 100 * (1 - 0.2 / 1.2), 1e-9);
+  EXPECT_NEAR(rows[0].p85_accuracy[static_cast<int>(WorstOf::kAllTimesteps)], 100 * (1 - 0.1 / 2.4), 1e-9);
   EXPECT_NEAR(rows[1].accuracy[static_cast<int>(WorstOf::kAllArms)], 0.0, 1e-9);
 }
 
 TEST(LookForwardTest, ThePapersPatternIsAskedOfTheNumbers) {
   std::vector<ArmData> arms = {Arm("ed3r-75", {0.4, 0.2, 0.2, 0.2, 0.2, 0.1, 0.1})};
-  EXPECT_FALSE(GivesThePapersPattern(LookForwardOf(arms), WorstOf::kArm)) << "no ablations";
+  EXPECT_EQ(PatternOf(LookForwardOf(arms), WorstOf::kArm).ablations_above_ed3r, std::nullopt);
+  EXPECT_EQ(PatternOf(LookForwardOf(arms), WorstOf::kArm).p85_above_mean, std::nullopt);
   for (const char* name : {"ablation-1", "ablation-2", "ablation-3", "ablation-4"})
     arms.push_back(Arm(name, {0.4, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1}));
+  arms.push_back(Arm("ecd2r", {0.8, 0.4, 0.4, 0.4, 0.4, 0.4, 0.1}));
   const std::vector<LookForward> rows = LookForwardOf(arms);
-  EXPECT_TRUE(GivesThePapersPattern(rows, WorstOf::kArm));
-  EXPECT_FALSE(GivesThePapersPattern(rows, WorstOf::kGroup)) << "a group of one is its own worst mission";
+  const LookForwardPattern by_arm = PatternOf(rows, WorstOf::kArm);
+  EXPECT_EQ(by_arm.p85_above_mean, true);
+  EXPECT_EQ(by_arm.ablations_above_ed3r, true);
+  EXPECT_EQ(by_arm.ecd2r_above_ed3r, false) << "0.41 / 0.8 is more than 0.2 / 0.4";
+  EXPECT_FALSE(by_arm.Holds());
+  EXPECT_EQ(PatternOf(rows, WorstOf::kGroup).p85_above_mean, false)
+      << "a group of one is its own worst mission";
   EXPECT_NE(LookForwardText(rows).find("the arm's worst mission"), std::string::npos);
+  EXPECT_EQ(LookForwardJson(rows)["pattern"]["arm"]["ecd2r_above_ed3r"], false);
+}
+
+TEST(LookForwardTest, WhatIsNotThereIsEmpty) {
+  std::vector<ArmData> arms = {Arm("ed3r-75", {0.4, 0.2, 0.2, 0.2, 0.2, 0.1, 0.1})};
+  arms[0].missions.back().predicted_timesteps = 0;  // the P85 group has no prediction
+  const std::vector<LookForward> rows = LookForwardOf(arms);
+  EXPECT_TRUE(std::isnan(rows[0].p85_accuracy[0]));
+  EXPECT_EQ(LookForwardCsv(rows).find("nan"), std::string::npos);
+  EXPECT_TRUE(nlohmann::ordered_json::parse(
+                  LookForwardJson(rows).dump())["arms"]["ed3r-75"]["p85_accuracy_pct"]["arm"]
+                  .is_null());
 }
 
 TEST(LookForwardTest, NothingWithoutPredictions) {
