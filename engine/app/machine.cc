@@ -14,6 +14,7 @@
 #include <opencv2/core/version.hpp>
 #include <thread>
 
+#include "engine/core/math_library.h"
 #include "engine/core/version.h"
 #include "kernels/simd_level.h"
 
@@ -57,6 +58,7 @@ std::map<std::string, std::string> DescribeMachine() {
       {"compiler", code.compiler},
       {"flags", code.flags},
       {"commit", fmt::format("{}{}", code.commit, code.dirty ? " with uncommitted changes" : "")},
+      {"libm", MathLibraryIdentity()},
       {"source", fmt::format("flight {}, pixels {}, training {}, precision {}", code.flight, code.pixels,
                              code.training, code.precision)},
       {"lib bullet", fmt::format("{}.{}", BT_BULLET_VERSION / 100, BT_BULLET_VERSION % 100)},

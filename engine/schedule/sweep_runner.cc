@@ -7,6 +7,7 @@
 #include <set>
 
 #include "engine/core/check.h"
+#include "engine/core/math_library.h"
 #include "engine/core/version.h"
 #include "engine/mission/mission.h"
 #include "engine/mission/scenario.h"
@@ -56,7 +57,7 @@ bool Complete(const SweepPlan& plan, const std::vector<RunId>& stored, const std
 
 CodeIdentities CodeOf(const SweepPlan& plan) {
   const CodeVersion code = ThisCode();
-  CodeIdentities identities = {{"flight", {code.flight}}};
+  CodeIdentities identities = {{"flight", {code.flight}}, {kMathLibrary, {MathLibraryIdentity()}}};
   if (NeedsNetworks(plan)) identities["training"] = {code.training};
   for (const Stage& stage : plan.stages) {
     if (stage.precision) identities["precision"] = {code.precision};

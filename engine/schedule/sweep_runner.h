@@ -16,7 +16,7 @@
 
 namespace ed3r {
 
-// The code that decides this plan's results: of the subsystems that its arms use.
+// The code that decides this plan's results: of the subsystems that its arms use, and of the C library's mathematical functions.
 CodeIdentities CodeOf(const SweepPlan& plan);
 
 // What a plan makes of a mission: the same for flying, replaying and explaining.

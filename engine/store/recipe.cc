@@ -50,10 +50,14 @@ std::optional<std::string> CodeDifference(const CodeIdentities& there, const Cod
     const auto known = there.find(subsystem);
     if (known == there.end())
       return fmt::format("its code is {} there and {} here", CodeText(there), CodeText(here));
-    for (const std::string& identity : identities)
-      if (!known->second.contains(identity))
-        return fmt::format("the code of {} is {} there and {} here", subsystem,
-                           fmt::join(known->second, " and "), identity);
+    for (const std::string& identity : identities) {
+      if (known->second.contains(identity)) continue;
+      const std::string what = subsystem == kMathLibrary
+                                   ? "the C library, which rounds sin, exp and the like by its version and "
+                                     "the CPU's fused multiply-add,"
+                                   : fmt::format("the code of {}", subsystem);
+      return fmt::format("{} is {} there and {} here", what, fmt::join(known->second, " and "), identity);
+    }
   }
   return std::nullopt;
 }

@@ -12,6 +12,8 @@ namespace ed3r {
 // The code that decided results, by subsystem ("flight", "training"): one identity, or several where a run was continued
 // by other code on purpose. Files of format 1 know one subsystem, "sources".
 using CodeIdentities = std::map<std::string, std::set<std::string>>;
+inline constexpr const char* kMathLibrary =
+    "libm";  // the subsystem that is not ours (engine/core/math_library.h)
 
 // "flight 0123abcd, training 4567 and 89ab"
 std::string CodeText(const CodeIdentities& code);
