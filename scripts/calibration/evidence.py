@@ -8,6 +8,8 @@ unit of the quantity). Energies and durations are compared on a logarithmic scal
 import dataclasses
 import math
 
+import numpy as np
+
 
 @dataclasses.dataclass(frozen=True)
 class Quantity:
@@ -23,6 +25,10 @@ class Quantity:
             return math.log(value)
         share = min(max(value / 100.0, 2e-3), 1 - 2e-3)
         return math.log(share / (1.0 - share))
+
+    def unscaled(self, scaled):
+        """The inverse of scaled(), also of arrays."""
+        return np.exp(scaled) if not self.percentage else 100.0 / (1.0 + np.exp(-scaled))
 
     def slope(self, value):
         """Of the scale at `value`: turns errors there into errors on the scale."""
@@ -73,10 +79,14 @@ PRINTED = (
 MARGIN_SHARE, MARGIN_POINTS = 0.10, 5.0  # as the verdicts' (studies/claims/equivalence.h)
 
 
+def room(paper, error, percentage):
+    """How far from the paper's a value that is known exactly may be and still be equivalent: what the paper's own sampling
+    leaves of the margin. Below 0: no value is."""
+    return (MARGIN_POINTS if percentage else MARGIN_SHARE * paper) - 1.96 * error
+
+
 def equivalent(value, paper, error, percentage):
-    """Whether a value that is known exactly is the paper's within the margin, the paper's sampling included."""
-    margin = MARGIN_POINTS if percentage else MARGIN_SHARE * paper
-    return abs(value - paper) + 1.96 * error <= margin
+    return abs(value - paper) <= room(paper, error, percentage)
 
 
 def equivalents(measures):

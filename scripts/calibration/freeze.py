@@ -61,14 +61,18 @@ def keys_of(row):
             **settings_of(record.point_of(row))}
 
 
-def matched_rows(rows, judged_wave):
-    """Judged worlds: those that are not ruled out, and so many others that MATCHED are kept; the default first, the others by
-    implausibility."""
-    judged = sorted((row for row in record.flown(rows) if row["wave"] == judged_wave), key=lambda row: row["implausibility"])
-    left = sum(row["implausibility"] < CUT for row in judged)
-    kept = judged[:max(left, MATCHED)]
-    default = max(kept, key=lambda row: (len(equivalents(row)), -row["implausibility"]))
-    return [default] + [row for row in kept if row is not default]
+def matched_rows(rows, judging):
+    """Of the worlds that the waves `judging` judged, each as the last of them has it: those that are not ruled out, and so many
+    others that MATCHED are kept; the default first, which the last of the waves chooses, the others by implausibility."""
+    judged = {}
+    for row in record.flown(rows):
+        if row["wave"] in judging:
+            judged[tuple(record.point_of(row).values())] = row
+    default = max((row for row in judged.values() if row["wave"] == judging[-1]),
+                  key=lambda row: (len(equivalents(row)), -row["implausibility"]))
+    others = sorted((row for row in judged.values() if row is not default), key=lambda row: row["implausibility"])
+    left = sum(row["implausibility"] < CUT for row in others)
+    return [default] + others[:max(left, MATCHED - 1)]
 
 
 def sha256(path):
@@ -124,8 +128,8 @@ def write_table(folder, row, rows):
     print("\n".join(lines))
 
 
-def freeze(rows, folder, judged_wave):
-    matched = matched_rows(rows, judged_wave)
+def freeze(rows, folder, judging):
+    matched = matched_rows(rows, judging)
     for row in rows:
         row["frozen"] = "yes" if row is matched[0] else ""
     record.write(folder / "record.csv", rows)
