@@ -2,13 +2,17 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "engine/app/commands.h"
+#include "engine/app/failure_text.h"
+#include "engine/app/words.h"
 #include "engine/store/digest.h"
 #include "engine/store/merge.h"
 #include "engine/store/reader.h"
+#include "engine/store/schema.h"
 #include "studies/report/load.h"
 #include "studies/report/report.h"
 #include "studies/report/report_folder.h"
@@ -28,7 +32,21 @@ std::shared_ptr<DirOptions> AddDirOptions(CLI::App& parser) {
   return options;
 }
 
-void PrintStatusJson(ResultReader& reader) {
+// About a second's work. Beyond it a look at the status must not take long.
+constexpr std::uintmax_t kCheckedBytes = 200'000'000;
+
+struct Check {
+  bool done = false;
+  std::vector<DamagedMission> damage;
+};
+
+Check CheckOf(ResultReader& reader) {
+  if (std::filesystem::file_size(std::filesystem::path(reader.dir()) / kResultsFile) > kCheckedBytes)
+    return {};
+  return {true, reader.FindDamage()};
+}
+
+void PrintStatusJson(ResultReader& reader, const Check& check) {
   nlohmann::ordered_json object = {{"name", reader.Layout().name}, {"arms", nlohmann::ordered_json::array()}};
   for (const ArmStatus& arm : reader.Status())
     object["arms"].push_back({{"stage", arm.stage},
@@ -37,36 +55,46 @@ void PrintStatusJson(ResultReader& reader) {
                               {"done", arm.done},
                               {"failed", arm.failed},
                               {"missing", arm.missing}});
-  object["failures"] = nlohmann::ordered_json::array();
-  for (const FailedMission& failure : reader.Failures())
-    object["failures"].push_back({{"mission", reader.Layout().Describe(failure.id)},
-                                  {"scenario", failure.scenario},
-                                  {"seed", failure.seed},
-                                  {"message", failure.message}});
+  const std::vector<FailedMission> failures = reader.Failures();
+  object["failure_kinds"] = FailureKindsJson(failures);
+  object["failures"] = FailuresJson(reader.Layout(), failures);
+  object["checked"] = check.done;
+  object["damaged"] = nlohmann::ordered_json::array();
+  for (const DamagedMission& damage : check.damage)
+    object["damaged"].push_back({{"mission", damage.name}, {"problem", damage.what}});
   fmt::print("{}\n", object.dump(2));
 }
 
-void PrintStatus(ResultReader& reader) {
+void PrintStatus(ResultReader& reader, const Check& check) {
   fmt::print("{:<12} {:<28} {:>8} {:>8} {:>8} {:>8}\n", "stage", "arm", "planned", "done", "failed",
              "missing");
   for (const ArmStatus& arm : reader.Status())
     fmt::print("{:<12} {:<28} {:>8} {:>8} {:>8} {:>8}\n", arm.stage, arm.arm, arm.planned, arm.done,
                arm.failed, arm.missing);
-  for (const FailedMission& failure : reader.Failures())
-    fmt::print("failed: {} (scenario {}, seed {}): {}\n", reader.Layout().Describe(failure.id),
-               failure.scenario, failure.seed, failure.message);
+  fmt::print("{}", FailuresText(reader.Layout(), reader.Failures()));
+  if (!check.done)
+    fmt::print("not compared with its checksums, as it is larger than {} MB: 'ed3r verify {}' does\n",
+               kCheckedBytes / 1'000'000, reader.dir());
+  if (!check.damage.empty())
+    fmt::print(
+        "damaged: {}, the first {}: {}; 'ed3r verify {}' names all, 'ed3r run SWEEP --repair' flies them "
+        "again\n",
+        Counted(std::ssize(check.damage), "mission"), check.damage.front().name, check.damage.front().what,
+        reader.dir());
 }
 
 }  // namespace
 
 Command AddStatus(CLI::App& program) {
-  CLI::App* parser =
-      program.add_subcommand("status", "Done, failed and missing missions of a run, while it runs or after");
+  CLI::App* parser = program.add_subcommand(
+      "status",
+      "Done, failed and missing missions of a run, while it runs or after; exit 1 where any is damaged");
   const auto options = AddDirOptions(*parser);
   return {parser, [options] {
             ResultReader reader(options->dir);
-            options->json ? PrintStatusJson(reader) : PrintStatus(reader);
-            return kDone;
+            const Check check = CheckOf(reader);
+            options->json ? PrintStatusJson(reader, check) : PrintStatus(reader, check);
+            return check.damage.empty() ? kDone : kFailedInside;
           }};
 }
 

@@ -22,7 +22,7 @@ struct Options {
   std::string cache = "results/cache";
   int threads = 0;
   std::string shard = "1/1";
-  bool quiet = false, repair = false, accept_mixed = false;
+  bool quiet = false, repair = false, only_failed = false, accept_mixed = false;
 };
 
 // One line on what this session did, with the real-time factor per core.
@@ -63,6 +63,7 @@ int Run(const Options& options) {
   sweep.schedule.stop = &InterruptFlag();
   sweep.schedule.quiet = options.quiet;
   sweep.repair = options.repair;
+  sweep.only_failed = options.only_failed;
   sweep.accept_mixed = options.accept_mixed;
   sweep.half_width = HalfWidth;
   sweep.notes = DescribeMachine();
@@ -74,8 +75,10 @@ int Run(const Options& options) {
     Tell(summary, sweep.dir);
   }
   if (summary.flown.interrupted) {
-    fmt::print(stderr, "interrupted: what is stored is kept; the same command continues\n");
-    return kInterrupted;
+    const bool requeue = AsksRequeue(InterruptSignal());
+    fmt::print(stderr, "{}: what is stored is kept; the same command continues\n",
+               requeue ? fmt::format("ended by {}", SignalName(InterruptSignal())) : "interrupted");
+    return requeue ? kRequeue : kInterrupted;
   }
   return summary.flown.failed > 0 ? kMissionsFailed : kDone;
 }
@@ -99,6 +102,9 @@ Command AddRun(CLI::App& program) {
                      "'ed3r merge' joins them");
   parser->add_flag("--repair", options->repair,
                    "Delete stored missions that are damaged ('ed3r verify' names them) and fly them again");
+  parser->add_flag(
+      "--only-failed", options->only_failed,
+      "Fly the missions that have failed again ('ed3r status' tells why), and none that are missing");
   parser->add_flag("--accept-mixed", options->accept_mixed,
                    "Continue a run that other code has begun; its report says so");
   parser->add_flag("--quiet", options->quiet, "Neither progress nor table");

@@ -112,8 +112,9 @@ MissionTask StoredRun::Task(const RunId& id) {
   const Arm& arm = plan_.stages[static_cast<std::size_t>(id.stage)].arms[static_cast<std::size_t>(id.arm)];
   if (networks_ == nullptr && !FindStrategy(arm.config.mission.strategy).networks.empty()) {
     const FlownNetworks flown = reader_.Networks();
-    networks_ = flown.uses.empty() ? TrainNetworks(plan_, {reader_.dir(), cache_dir_, ThreadsFor(0), nullptr})
-                                   : NetworkShelf::From(flown, reader_.dir());
+    networks_ = flown.uses.empty()
+                    ? TrainNetworks(plan_, {"", reader_.dir(), cache_dir_, ThreadsFor(0), nullptr})
+                    : NetworkShelf::From(flown, reader_.dir());
   }
   return TaskOf(plan_, inputs_, networks_.get(), id);
 }

@@ -2,14 +2,17 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <random>
 #include <system_error>
+#include <vector>
 
 #include "engine/core/check.h"
 
@@ -51,6 +54,41 @@ std::string Refusal(const std::string& path, struct stat& found, int descriptor)
 
 int OpenToRead(const std::string& path) {
   return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+}
+
+// "ed3r", the machine, a random number: 8 and 16 hexadecimal digits.
+constexpr std::string_view kTemporaryBegin = ".ed3r-", kTemporaryEnd = ".tmp";
+constexpr std::size_t kMachineDigits = 8, kRandomDigits = 16;
+constexpr std::time_t kForgotten_s = 24 * 60 * 60;
+
+std::string TemporaryPrefix() {
+  char name[256] = {};
+  if (::gethostname(name, sizeof name - 1) != 0) name[0] = '\0';
+  std::uint32_t hash = 2166136261u;  // FNV-1a
+  for (const char* c = name; *c != '\0'; ++c) hash = (hash ^ static_cast<unsigned char>(*c)) * 16777619u;
+  return fmt::format("{}{:08x}-", kTemporaryBegin, hash);
+}
+
+bool IsTemporaryName(std::string_view name) {
+  const std::size_t digits = kMachineDigits + 1 + kRandomDigits;
+  if (name.size() != kTemporaryBegin.size() + digits + kTemporaryEnd.size() ||
+      !name.starts_with(kTemporaryBegin) || !name.ends_with(kTemporaryEnd))
+    return false;
+  for (std::size_t i = 0; i < digits; ++i) {
+    const char c = name[kTemporaryBegin.size() + i];
+    const bool is_digit = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
+    if (i == kMachineDigits ? c != '-' : !is_digit) return false;
+  }
+  return true;
+}
+
+// Whether nobody writes it any more. `here`: it is of this machine, whose locks can be asked.
+bool IsLeftover(const fs::path& path, bool here) {
+  const Descriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  struct stat found = {};
+  if (file.number() < 0 || ::fstat(file.number(), &found) != 0 || !S_ISREG(found.st_mode)) return false;
+  if (!here && std::time(nullptr) - found.st_mtime < kForgotten_s) return false;
+  return ::flock(file.number(), LOCK_EX | LOCK_NB) == 0;
 }
 
 // The new name itself must survive a crash. A file system that cannot sync a directory is no reason to fail.
@@ -109,12 +147,26 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
   struct stat found = {};
   if (::lstat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode) && !S_ISLNK(found.st_mode))
     throw UserError(fmt::format("{}: cannot be written: {}", path.string(), KindOf(found.st_mode)));
+  for (int attempt = 0; !OpenTemporary(); ++attempt)
+    if (errno != EEXIST || attempt == 100) Fail(errno);
+}
+
+// False, with errno, where there is none.
+bool AtomicFile::OpenTemporary() {
   std::random_device random;
-  for (int attempt = 0; descriptor_ < 0; ++attempt) {
-    temporary_ = path.parent_path() / fmt::format(".ed3r-{:08x}{:08x}.tmp", random(), random());
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (descriptor_ < 0 && (errno != EEXIST || attempt == 100)) Fail(errno);
-  }
+  temporary_ = path_.parent_path() /
+               fmt::format("{}{:08x}{:08x}{}", TemporaryPrefix(), random(), random(), kTemporaryEnd);
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) return false;
+  // Held while it is written, so that RemoveLeftovers can tell it from one whose process is gone. A file system without
+  // such locks refuses them to both.
+  ::flock(descriptor_, LOCK_EX | LOCK_NB);
+  struct stat found = {};
+  if (::fstat(descriptor_, &found) != 0 || found.st_nlink > 0) return true;
+  ::close(descriptor_);  // taken for a leftover in between
+  descriptor_ = -1;
+  errno = EEXIST;
+  return false;
 }
 
 AtomicFile::~AtomicFile() {
@@ -164,6 +216,19 @@ void WriteFile(const fs::path& path, std::string_view content) {
   AtomicFile file(path);
   file.Write(content);
   file.Commit();
+}
+
+int RemoveLeftovers(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> found;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (IsTemporaryName(entry->path().filename().string())) found.push_back(entry->path());
+  const std::string here = TemporaryPrefix();
+  int removed = 0;
+  for (const fs::path& path : found)
+    if (IsLeftover(path, path.filename().string().starts_with(here)) && ::unlink(path.c_str()) == 0)
+      ++removed;
+  return removed;
 }
 
 void MakeFolder(const fs::path& folder) {

@@ -38,6 +38,7 @@ class AtomicFile {
   void Commit();  // the last call; syncs the file, renames it, syncs its folder
 
  private:
+  bool OpenTemporary();
   void Flush();
   [[noreturn]] void Fail(int error);
 
@@ -47,6 +48,11 @@ class AtomicFile {
 };
 
 void WriteFile(const std::filesystem::path& path, std::string_view content);
+
+// Removes what AtomicFile left in this folder in processes that were killed: files of its names alone, that no process
+// of this machine has open, or that another machine has not touched for a day. Errors are passed over: nothing depends on
+// it. Returns how many there were.
+int RemoveLeftovers(const std::filesystem::path& folder);
 
 // Makes the folder and those above it where they are missing.
 void MakeFolder(const std::filesystem::path& folder);

@@ -1,20 +1,10 @@
 #include "engine/mission/accounts.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/check.h"
-
 namespace ed3r {
 namespace {
-
-constexpr double kLedgerTolerance = 1e-9;  // relative
-
-bool AddsUp(double expected, double found) {
-  return std::abs(expected - found) <= kLedgerTolerance * std::max(std::abs(expected), 1.0);
-}
 
 double MovementJ(const TimestepRecord& s) {
   return s.horizontal_j + s.ascent_j + s.descent_j + s.hover_turning_j + s.hover_sensing_j +
@@ -113,23 +103,6 @@ void SumSteps(double eta_min, MissionRecord& record) {
       record.largest_reward_error = std::max(record.largest_reward_error, error);
     }
   }
-}
-
-void CheckLedger(const MissionRecord& record, const MovementPower& power, double battery_j) {
-  for (const TimestepRecord& step : record.steps) {
-    const double hovering_s = step.turning_s + step.sensing_s + step.computing_s + step.transmitting_s;
-    const double expected_j = power.hover_w * hovering_s + power.horizontal_w * step.horizontal_s +
-                              power.ascent_w * step.ascent_s + power.descent_w * step.descent_s +
-                              step.sensing_j + step.computation_j + step.transmission_j;
-    ED3R_CHECK(AddsUp(expected_j, step.total_j),
-               fmt::format("timestep {}: parts {} J, total {} J", step.k, expected_j, step.total_j));
-  }
-  const double parts_j = record.movement_j + record.sensing_j + record.computation_j + record.transmission_j;
-  ED3R_CHECK(AddsUp(parts_j, record.total_j),
-             fmt::format("mission: parts {} J, total {} J", parts_j, record.total_j));
-  ED3R_CHECK(
-      AddsUp(battery_j - record.battery_left_j, record.total_j),
-      fmt::format("battery gave {} J, ledger says {} J", battery_j - record.battery_left_j, record.total_j));
 }
 
 }  // namespace ed3r

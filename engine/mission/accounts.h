@@ -1,4 +1,4 @@
-// From what happened to what is recorded: filling timestep records, summing them, and proving that the ledger adds up.
+// From what happened to what is recorded: filling timestep records and summing them.
 #pragma once
 
 #include "engine/agents/remote_controller.h"
@@ -18,9 +18,5 @@ void RecordLedger(const StepTime& time, const StepEnergy& energy, double battery
 
 // Fills every sum of the mission from its steps.
 void SumSteps(double eta_min, MissionRecord& record);
-
-// Recomputes every timestep's energy from its times and the powers, and the battery from the total. Throws
-// InternalError when either misses by more than 1e-9 relative.
-void CheckLedger(const MissionRecord& record, const MovementPower& power, double battery_j);
 
 }  // namespace ed3r

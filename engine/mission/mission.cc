@@ -11,6 +11,7 @@
 #include "engine/core/check.h"
 #include "engine/core/interrupt.h"
 #include "engine/mission/accounts.h"
+#include "engine/mission/invariants.h"
 #include "engine/mission/scenario.h"
 #include "engine/perception/pixels/pixel_sensor.h"
 #include "engine/perception/sensor.h"
@@ -97,7 +98,8 @@ class Mission {
 MissionRecord Mission::Fly() {
   for (std::uint32_t k = 1;; ++k) {
     if (task_.stop != nullptr && task_.stop->load(std::memory_order_relaxed)) throw Interrupted();
-    ED3R_CHECK(k <= static_cast<std::uint32_t>(config_.mission.max_timesteps), "the mission does not end");
+    if (k > static_cast<std::uint32_t>(config_.mission.max_timesteps))
+      throw BrokenInvariant(Invariant::kMissionEnds, fmt::format("the mission does not end: timestep {}", k));
 
     const RcView rc_view = ControllerView();
     const MotionDecision motion =
@@ -250,7 +252,10 @@ MissionRecord Mission::Close(Outcome outcome) {
   record.steps = std::move(steps_);
   SumSteps(config_.agents.eta_min, record);
   record.distance_m = distance_m_;
-  CheckLedger(record, power_, config_.robot.BatteryJ());
+  CheckInvariants(record, {.power = power_,
+                           .battery_j = config_.robot.BatteryJ(),
+                           .scene = task_.scene,
+                           .gust_mps = config_.environment.gust_mps});
   return record;
 }
 

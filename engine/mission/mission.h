@@ -45,8 +45,8 @@ struct MissionTask {
   TraceSink* trace = nullptr;  // receives the flown path; for replays
 };
 
-// Throws InternalError when an invariant breaks (ledger, start inside an obstacle, endless mission), UserError when
-// the configuration does not fit the world, Interrupted.
+// Throws BrokenInvariant (invariants.h), InternalError for any other defect, UserError when the configuration does not fit
+// the world, Interrupted.
 // Threads: tasks may share scene and config.
 MissionRecord FlyMission(const MissionTask& task);
 

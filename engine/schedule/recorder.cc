@@ -26,10 +26,17 @@ Recorder::~Recorder() {
   if (thread_.joinable()) thread_.join();
 }
 
+void Recorder::Abandon(const std::exception_ptr& error) {
+  const std::lock_guard lock(abandoning_);
+  if (!abandoned_) abandoned_ = error;
+  stop_ = true;
+}
+
 RunSummary Recorder::Finish() {
   queue_.Close();
   thread_.join();
   if (error_) std::rethrow_exception(error_);
+  if (abandoned_) std::rethrow_exception(abandoned_);
   return {.stored = progress_.stored,
           .failed = progress_.failed,
           .wall_s = Seconds(Clock::now() - begin_),

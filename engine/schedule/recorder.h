@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -20,7 +21,7 @@ namespace ed3r {
 struct Finished {
   RunId id;
   std::optional<MissionRecord> record;
-  std::string failure;
+  Failure failure;
   double wall_s = 0;
 };
 
@@ -35,6 +36,9 @@ class Recorder {
 
   // Hands a mission over; waits while the queue is full. It is dropped when the store has failed.
   void Offer(Finished finished) { queue_.Push(std::move(finished)); }
+
+  // Ends the run: Finish() commits what has been offered and throws this, unless another error came first.
+  void Abandon(const std::exception_ptr& error);
 
   // True from the moment on when missions need not be flown any more.
   const std::atomic<bool>& stop() const { return stop_; }
@@ -55,6 +59,8 @@ class Recorder {
   const ScheduleOptions options_;
   BoundedQueue<Finished> queue_;
   std::atomic<bool> stop_{false};
+  std::mutex abandoning_;
+  std::exception_ptr abandoned_;
   const Clock::time_point begin_ = Clock::now();
 
   // Of the thread alone, until it has ended.

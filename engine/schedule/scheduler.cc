@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <exception>
+#include <new>
 #include <utility>
 
 #include "engine/core/check.h"
 #include "engine/core/interrupt.h"
+#include "engine/mission/invariants.h"
 #include "engine/schedule/parallel_for.h"
 #include "engine/schedule/recorder.h"
 #include "engine/store/records.h"
@@ -17,21 +20,38 @@ namespace {
 constexpr int kMostThreads = 4096;
 constexpr std::size_t kQueuedPerThread = 4;  // finished missions that may wait for the writer
 
+// Kinds are words, kept with the results: append, never rename.
+Failure FailureOf(const std::exception_ptr& thrown) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const BrokenInvariant& error) {
+    return {std::string(NameOf(error.Which())), error.what()};
+  } catch (const InternalError& error) {
+    return {"broken-check", error.what()};
+  } catch (const UserError& error) {
+    return {"bad-input", error.what()};
+  } catch (const std::bad_alloc&) {
+    return {"out-of-memory", "there was not enough memory"};
+  } catch (const std::exception& error) {
+    return {"exception", error.what()};
+  } catch (...) {
+    return {"exception", "an exception of unknown type"};
+  }
+}
+
 // Flies one mission. Nothing when it was interrupted: a record that came back after the stop may be cut
 // short, so it is not trusted.
 std::optional<Finished> FlyOne(const FlyFn& fly, const RunId& id, const std::atomic<bool>& stop) {
-  Finished finished{.id = id, .record = std::nullopt, .failure = "", .wall_s = 0};
+  Finished finished{.id = id, .record = std::nullopt, .failure = {}, .wall_s = 0};
   const auto begin = std::chrono::steady_clock::now();
   try {
     finished.record = fly(id, stop);
     CheckStorable(*finished.record);
   } catch (const Interrupted&) {
     return std::nullopt;
-  } catch (const std::exception& error) {
-    finished.record.reset();
-    finished.failure = error.what();
   } catch (...) {
-    finished.failure = "an exception of unknown type";
+    finished.record.reset();
+    finished.failure = FailureOf(std::current_exception());
   }
   if (stop.load()) return std::nullopt;
   finished.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -53,8 +73,12 @@ RunSummary RunMissions(const std::vector<RunId>& todo, const FlyFn& fly, ResultS
   Recorder recorder(store, options, missions, kQueuedPerThread * static_cast<std::size_t>(threads));
   ParallelFor(threads, missions, [&](std::int64_t i) {
     if (recorder.stop().load()) return;
-    if (auto finished = FlyOne(fly, todo[static_cast<std::size_t>(i)], recorder.stop()))
-      recorder.Offer(std::move(*finished));
+    try {
+      if (auto finished = FlyOne(fly, todo[static_cast<std::size_t>(i)], recorder.stop()))
+        recorder.Offer(std::move(*finished));
+    } catch (...) {  // not of the mission: there is no memory to hand it over
+      recorder.Abandon(std::current_exception());
+    }
   });
   RunSummary summary = recorder.Finish();
   summary.threads = threads;

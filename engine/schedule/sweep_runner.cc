@@ -7,6 +7,7 @@
 #include <set>
 
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "engine/core/math_library.h"
 #include "engine/core/version.h"
 #include "engine/mission/mission.h"
@@ -96,18 +97,23 @@ class Stages {
         layout_(LayoutOf(plan)),
         store_(ResultStore::Open(options.dir, RecipeOf(plan, inputs, options.notes), layout_,
                                  options.accept_mixed ? OtherCode::kAccept : OtherCode::kRefuse)) {
+    RemoveLeftovers(options.dir);
+    RemoveLeftovers(options.cache_dir);
     LookForDamage();
     summary_.stored_before = static_cast<std::int64_t>(store_->Stored().size());
   }
 
   SweepSummary Run() {
+    if (options_.only_failed) again_ = store_->Failed();
     for (std::size_t i = 0; i < plan_.stages.size() && !summary_.flown.interrupted; ++i) {
+      if (options_.only_failed && !AnyAgainFrom(static_cast<int>(i))) break;
       const std::vector<RunId> stored = store_->Stored();
       if (!Ready(plan_.stages[i], stored)) {
         summary_.waiting_stage = plan_.stages[i].name;
         break;
       }
-      plan_.stages[i].kind == StageKind::kTrain ? Train() : Fly(static_cast<int>(i), stored);
+      plan_.stages[i].kind == StageKind::kTrain ? Train(plan_.stages[i].name)
+                                                : Fly(static_cast<int>(i), stored);
     }
     return std::move(summary_);
   }
@@ -129,13 +135,20 @@ class Stages {
   }
 
   void Fly(int stage, const std::vector<RunId>& stored) {
-    if (plan_.stages[static_cast<std::size_t>(stage)].precision)
+    if (plan_.stages[static_cast<std::size_t>(stage)].precision && !options_.only_failed)
       FlyUntilPrecise(stage);
     else
       FlyThese(stage, Todo(layout_, stage, options_.shard, stored), stored);
   }
 
-  void FlyThese(int stage, const std::vector<RunId>& todo, const std::vector<RunId>& stored) {
+  bool AnyAgainFrom(int stage) const {
+    return std::any_of(again_.begin(), again_.end(), [&](const RunId& id) { return id.stage >= stage; });
+  }
+
+  void FlyThese(int stage, std::vector<RunId> todo, const std::vector<RunId>& stored) {
+    if (options_.only_failed)
+      std::erase_if(todo,
+                    [&](const RunId& id) { return !std::binary_search(again_.begin(), again_.end(), id); });
     ScheduleOptions schedule = options_.schedule;
     schedule.label = plan_.stages[static_cast<std::size_t>(stage)].name;
     schedule.stored_before = StoredOfStage(stored, stage);
@@ -172,15 +185,17 @@ class Stages {
     finished_.insert(plan.name);
   }
 
-  void Train() {
+  void Train(const std::string& stage) {
     store_->Commit();
-    networks_ =
-        TrainNetworks(plan_, {options_.dir, options_.cache_dir, ThreadsFor(options_.schedule.threads),
+    std::unique_ptr<NetworkShelf> trained =
+        TrainNetworks(plan_, {stage, options_.dir, options_.cache_dir, ThreadsFor(options_.schedule.threads),
                               options_.schedule.stop, options_.schedule.progress, options_.schedule.quiet});
-    if (networks_ == nullptr) {
+    if (trained == nullptr) {
       summary_.flown.interrupted = true;
       return;
     }
+    if (networks_ == nullptr) networks_ = std::make_unique<NetworkShelf>();
+    networks_->Take(std::move(*trained));
     store_->PutNetworks(networks_->Flown());
     summary_.networks = networks_->All();
   }
@@ -191,6 +206,7 @@ class Stages {
   const RunLayout layout_;
   const std::unique_ptr<ResultStore> store_;
   std::unique_ptr<NetworkShelf> networks_;
+  std::vector<RunId> again_;  // missions that have failed, where only those are asked for
   std::set<std::string>
       finished_;  // stages with a precision whose arms are all known well enough, or flown out
   SweepSummary summary_;

@@ -35,6 +35,7 @@ struct SweepOptions {
   Shard shard;
   ScheduleOptions schedule;
   bool repair = false;                       // take damaged missions out and fly them again
+  bool only_failed = false;                  // fly what has failed again, and nothing that is missing
   bool accept_mixed = false;                 // continue what other code has begun
   HalfWidthFn half_width;                    // asked by stages with a precision
   std::map<std::string, std::string> notes;  // on machine and libraries, stored with the session

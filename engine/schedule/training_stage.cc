@@ -33,18 +33,33 @@ std::set<std::string> Foundations(const SweepPlan& plan, const Stage& stage) {
   return found;
 }
 
-// The warm-up arm that `learner`, an arm of `stage`, learns from; (-1, -1) when there is none.
-std::pair<int, int> WarmupOf(const SweepPlan& plan, const Stage& stage, const Arm& learner,
-                             std::string_view source) {
+// What an arm that asks networks learns from: `warmup` is (stage, arm), `trainings` the training stages behind it and
+// before the arm. (-1, -1) when there is none.
+struct Lesson {
+  std::pair<int, int> warmup = {-1, -1};
+  std::set<std::string> trainings;
+};
+
+// A warm-up counts only where a training stage stands between it and the arm: before that it may not be flown yet.
+Lesson LessonOf(const SweepPlan& plan, const Stage& stage, const Arm& learner, std::string_view source) {
   const std::set<std::string> foundations = Foundations(plan, stage);
   for (std::size_t s = 0; s < plan.stages.size(); ++s) {
-    if (plan.stages[s].kind != StageKind::kFly || !foundations.contains(plan.stages[s].name)) continue;
-    for (std::size_t a = 0; a < plan.stages[s].arms.size(); ++a)
-      if (plan.stages[s].arms[a].config.mission.strategy == source &&
-          plan.stages[s].arms[a].variant == learner.variant)
-        return {static_cast<int>(s), static_cast<int>(a)};
+    const Stage& flown = plan.stages[s];
+    if (flown.kind != StageKind::kFly || !foundations.contains(flown.name)) continue;
+    Lesson lesson;
+    for (const Stage& training : plan.stages)
+      if (training.kind == StageKind::kTrain && foundations.contains(training.name) &&
+          Foundations(plan, training).contains(flown.name))
+        lesson.trainings.insert(training.name);
+    if (lesson.trainings.empty()) continue;
+    for (std::size_t a = 0; a < flown.arms.size(); ++a) {
+      if (flown.arms[a].config.mission.strategy != source || flown.arms[a].variant != learner.variant)
+        continue;
+      lesson.warmup = {static_cast<int>(s), static_cast<int>(a)};
+      return lesson;
+    }
   }
-  return {-1, -1};
+  return {};
 }
 
 // All that the rows of a data set depend on.
@@ -127,6 +142,15 @@ std::unique_ptr<NetworkShelf> NetworkShelf::From(const FlownNetworks& flown, con
   return shelf;
 }
 
+void NetworkShelf::Take(NetworkShelf&& other) {
+  for (auto& [arm, pairs] : other.by_arm_) by_arm_[arm] = std::move(pairs);
+  for (ShelvedNetwork& network : other.all_)
+    if (std::none_of(all_.begin(), all_.end(), [&](const ShelvedNetwork& known) {
+          return known.name == network.name && known.file == network.file;
+        }))
+      all_.push_back(std::move(network));
+}
+
 bool NeedsNetworks(const SweepPlan& plan) {
   return std::any_of(plan.stages.begin(), plan.stages.end(), [](const Stage& stage) {
     return std::any_of(stage.arms.begin(), stage.arms.end(), [](const Arm& arm) {
@@ -140,11 +164,7 @@ void CheckTraining(const SweepPlan& plan) {
     for (const Arm& arm : stage.arms) {
       const Strategy& strategy = FindStrategy(arm.config.mission.strategy);
       if (stage.kind != StageKind::kFly || strategy.networks.empty()) continue;
-      const std::set<std::string> foundations = Foundations(plan, stage);
-      const bool trained = std::any_of(plan.stages.begin(), plan.stages.end(), [&](const Stage& other) {
-        return other.kind == StageKind::kTrain && foundations.contains(other.name);
-      });
-      if (!trained || WarmupOf(plan, stage, arm, strategy.networks).first < 0)
+      if (LessonOf(plan, stage, arm, strategy.networks).warmup.first < 0)
         throw UserError(
             fmt::format("{}: stage {}: arm {} asks networks, so the stage must come after a training stage "
                         "('kind: train') that comes "
@@ -214,7 +234,9 @@ void TrainingStage::Collect() {
       const Arm& arm = stage.arms[a];
       const Strategy& strategy = FindStrategy(arm.config.mission.strategy);
       if (stage.kind != StageKind::kFly || strategy.networks.empty()) continue;
-      const Samples& samples = SamplesFor(WarmupOf(plan_, stage, arm, strategy.networks), arm.config.agents);
+      const Lesson lesson = LessonOf(plan_, stage, arm, strategy.networks);
+      if (!options_.stage.empty() && !lesson.trainings.contains(options_.stage)) continue;
+      const Samples& samples = SamplesFor(lesson.warmup, arm.config.agents);
       ArmNeed need{static_cast<int>(s), static_cast<int>(a), {}, {}};
       for (int seed = 0; seed < arm.config.training.seeds; ++seed) {
         need.rc_jobs.push_back(AddJob(kRcNetwork, samples.rc, arm, strategy.networks, seed));

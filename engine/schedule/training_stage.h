@@ -38,6 +38,9 @@ class NetworkShelf {
 
   const std::vector<ShelvedNetwork>& All() const { return all_; }
 
+  // Adds the arms of another shelf, whose networks replace those of the same arms.
+  void Take(NetworkShelf&& other);
+
   // For the store, and back from it.
   FlownNetworks Flown() const;
   // Every network is compared with the hash under which it flew; UserError when one differs.
@@ -53,6 +56,7 @@ class NetworkShelf {
 };
 
 struct TrainingOptions {
+  std::string stage;  // trains what the arms behind this training stage ask for; "" for all arms of the plan
   std::string run_dir;    // holds the warm-up missions
   std::string cache_dir;  // holds networks and checkpoints of all sweeps
   int threads = 1;
@@ -68,7 +72,8 @@ bool NeedsNetworks(const SweepPlan& plan);
 // strategy. Throws UserError that says what is missing; part of the checks before anything is written.
 void CheckTraining(const SweepPlan& plan);
 
-// Trains, or finds, all networks. Null when stopped: the same call again continues. NetworkShelf::From() takes them from
+// Trains, or finds, the networks of a training stage: those of arms behind it whose warm-up is before it, so that nothing
+// is learned from a warm-up that is not flown out. Null when stopped: the same call again continues. NetworkShelf::From() takes them from
 // a run that has flown.
 std::unique_ptr<NetworkShelf> TrainNetworks(const SweepPlan& plan, const TrainingOptions& options);
 

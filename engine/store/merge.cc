@@ -71,7 +71,8 @@ class Target {
       has_mission_.Bind(1, std::int64_t{failure.id.mission});
       const bool flown = has_mission_.Step();
       has_mission_.Reset();
-      if (!flown) writer_.InsertFailure(failure.id, failure.scenario, failure.seed, failure.message);
+      if (!flown)
+        writer_.InsertFailure(failure.id, failure.scenario, failure.seed, {failure.kind, failure.message});
     }
   }
 

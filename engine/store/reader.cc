@@ -49,7 +49,9 @@ std::vector<ArmStatus> ResultReader::Status() {
       status.push_back({.stage = stage.name, .arm = arm.name, .planned = stage.missions});
   MissionCursor cursor(database_, layout_, "", Steps::kSkip);
   while (cursor.Next()) {
-    ArmStatus& arm = status[static_cast<std::size_t>(layout_.RunIndex(cursor.Checked()))];
+    const std::optional<RunId> id = layout_.Place(cursor.run(), cursor.mission());
+    if (!id) continue;  // FindDamage() tells
+    ArmStatus& arm = status[static_cast<std::size_t>(layout_.RunIndex(*id))];
     ++arm.done;
     arm.simulated_s += cursor.record().duration_s;
     if (!std::isnan(cursor.wall_s())) arm.wall_s += cursor.wall_s();
@@ -60,20 +62,7 @@ std::vector<ArmStatus> ResultReader::Status() {
   return status;
 }
 
-std::vector<FailedMission> ResultReader::Failures() {
-  Statement select(database_,
-                   "SELECT run, mission, scenario, seed, message FROM failures ORDER BY run, mission");
-  std::vector<FailedMission> failures;
-  while (select.Step()) {
-    const std::optional<RunId> id = layout_.Place(select.Int(0), select.Int(1));
-    if (!id)
-      throw UserError(DamageText(
-          database_.file(), {select.Int(0), select.Int(1), layout_.DescribeKeys(select.Int(0), select.Int(1)),
-                             "it is said to have failed, but the plan has no such mission"}));
-    failures.push_back({*id, select.Int(2), static_cast<std::uint64_t>(select.Int(3)), select.Text(4)});
-  }
-  return failures;
-}
+std::vector<FailedMission> ResultReader::Failures() { return ReadFailures(database_, layout_); }
 
 std::vector<Session> ResultReader::Sessions() {
   const Transaction moment(database_, Transaction::Kind::kRead);

@@ -30,13 +30,6 @@ struct StoredMission {
   std::string checksum;      // see checksums.h; "" in files of format 1
 };
 
-struct FailedMission {
-  RunId id;
-  std::int64_t scenario = 0;
-  std::uint64_t seed = 0;
-  std::string message;
-};
-
 struct Session {
   std::int64_t id = 0;
   std::string host;

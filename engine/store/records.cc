@@ -19,7 +19,9 @@ RecordWriter::RecordWriter(Connection& database, const RunLayout& layout)
       insert_step_(database, fmt::format("INSERT INTO timesteps (run, mission, {}) VALUES ({})",
                                          ColumnNames<TimestepRecord>(), Placeholders<TimestepRecord>(2))),
       insert_timing_(database, "INSERT OR REPLACE INTO timings VALUES (?, ?, ?, ?)"),
-      insert_failure_(database, "INSERT OR REPLACE INTO failures VALUES (?, ?, ?, ?, ?)"),
+      insert_failure_(database,
+                      "INSERT OR REPLACE INTO failures (run, mission, scenario, seed, kind, message) "
+                      "VALUES (?, ?, ?, ?, ?, ?)"),
       delete_failure_(database, "DELETE FROM failures WHERE run = ? AND mission = ?") {}
 
 void RecordWriter::InsertMission(const RunId& id, const MissionRecord& record) {
@@ -46,9 +48,9 @@ void RecordWriter::InsertTiming(const RunId& id, std::int64_t session, double wa
 }
 
 void RecordWriter::InsertFailure(const RunId& id, std::int64_t scenario, std::uint64_t seed,
-                                 const std::string& message) {
+                                 const Failure& failure) {
   insert_failure_.Run(layout_.RunIndex(id), std::int64_t{id.mission}, scenario,
-                      static_cast<std::int64_t>(seed), message);
+                      static_cast<std::int64_t>(seed), failure.kind, failure.message);
 }
 
 void CheckStorable(const MissionRecord& record) {
@@ -62,6 +64,29 @@ std::string DamageText(const std::string& file, const DamagedMission& damage) {
       "{}: {} is damaged: {}; 'ed3r verify DIR' names all that is damaged, 'ed3r run SWEEP --repair' "
       "flies it again",
       file, damage.name, damage.what);
+}
+
+bool HasFailureKind(Connection& database) {
+  return database.Int("SELECT count(*) FROM pragma_table_info('failures') WHERE name = 'kind'") > 0;
+}
+
+std::vector<FailedMission> ReadFailures(Connection& database, const RunLayout& layout) {
+  const bool with_kind = HasFailureKind(database);
+  Statement select(database,
+                   fmt::format("SELECT run, mission, scenario, seed, {}, message FROM failures ORDER BY "
+                               "run, mission",
+                               with_kind ? "kind" : "''"));
+  std::vector<FailedMission> failures;
+  while (select.Step()) {
+    const std::optional<RunId> id = layout.Place(select.Int(0), select.Int(1));
+    if (!id)
+      throw UserError(DamageText(
+          database.file(), {select.Int(0), select.Int(1), layout.DescribeKeys(select.Int(0), select.Int(1)),
+                            "it is said to have failed, but the plan has no such mission"}));
+    failures.push_back(
+        {*id, select.Int(2), static_cast<std::uint64_t>(select.Int(3)), select.Text(4), select.Text(5)});
+  }
+  return failures;
 }
 
 MissionCursor::MissionCursor(Connection& database, const RunLayout& layout, const std::string& where,

@@ -15,6 +15,12 @@ namespace ed3r {
 // InternalError unless the timesteps are numbered upwards, which their key needs.
 void CheckStorable(const MissionRecord& record);
 
+// Why a mission has no record. `kind` groups failures: the name of an Invariant, or a word of the scheduler's; "" where a
+// file does not tell.
+struct Failure {
+  std::string kind, message;
+};
+
 class RecordWriter {
  public:
   // `layout` must outlive it.
@@ -24,13 +30,25 @@ class RecordWriter {
   void InsertMission(const RunId& id, const MissionRecord& record);
   void InsertTiming(const RunId& id, std::int64_t session, double wall_s);
   // Replaces an older failure of the same mission.
-  void InsertFailure(const RunId& id, std::int64_t scenario, std::uint64_t seed, const std::string& message);
+  void InsertFailure(const RunId& id, std::int64_t scenario, std::uint64_t seed, const Failure& failure);
 
  private:
   const RunLayout& layout_;
   RecordTables tables_;
   Statement insert_mission_, insert_step_, insert_timing_, insert_failure_, delete_failure_;
 };
+
+struct FailedMission {
+  RunId id;
+  std::int64_t scenario = 0;
+  std::uint64_t seed = 0;
+  std::string kind, message;  // as of Failure
+};
+
+// False in files that were begun before failures had kinds and have not been continued since.
+bool HasFailureKind(Connection& database);
+// In plan order. UserError for one that is not in the plan.
+std::vector<FailedMission> ReadFailures(Connection& database, const RunLayout& layout);
 
 enum class Steps { kSkip, kLoad };
 

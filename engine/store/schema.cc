@@ -40,7 +40,7 @@ CREATE TABLE sessions (session INTEGER PRIMARY KEY, host TEXT NOT NULL, process 
 CREATE TABLE session_notes (session INTEGER, key TEXT, value TEXT NOT NULL, PRIMARY KEY (session, key))
   STRICT, WITHOUT ROWID;
 CREATE TABLE failures (run INTEGER, mission INTEGER, scenario INTEGER NOT NULL, seed INTEGER NOT NULL,
-  message TEXT NOT NULL, PRIMARY KEY (run, mission)) STRICT, WITHOUT ROWID;
+  message TEXT NOT NULL, kind TEXT NOT NULL DEFAULT '', PRIMARY KEY (run, mission)) STRICT, WITHOUT ROWID;
 CREATE TABLE timings (run INTEGER, mission INTEGER, session INTEGER NOT NULL, wall_s REAL NOT NULL,
   PRIMARY KEY (run, mission)) STRICT, WITHOUT ROWID;
 CREATE TABLE missions (run INTEGER, mission INTEGER, checksum TEXT NOT NULL, steps_checksum TEXT NOT NULL, {},
@@ -154,6 +154,11 @@ void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& l
   AddCode(database, recipe.code);
   database.Execute(
       fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kSchemaVersion));
+}
+
+void AddFailureKind(Connection& database) {
+  if (!HasFailureKind(database))
+    database.Execute("ALTER TABLE failures ADD COLUMN kind TEXT NOT NULL DEFAULT ''");
 }
 
 void AddCode(Connection& database, const CodeIdentities& code) {

@@ -9,7 +9,7 @@
 //   flown_networks  which of them an arm asks, by training seed and agent
 //   missions        run, mission, checksum, steps_checksum (checksums.h), every column of MissionRecord
 //   timesteps       run, mission, every column of TimestepRecord (k first)
-//   failures        missions that threw, with scenario, seed and message; flown again by the next session
+//   failures        missions that threw, with scenario, seed, kind and message; flown again by the next session
 //   sessions        who wrote, when and with what (session_notes): in no digest
 //   timings         wall time of each mission and its session: in no digest
 //
@@ -18,7 +18,7 @@
 //
 // Formats: 1 had no checksums, code, files and networks; its recipe had one code_version and its inputs were called
 // worlds. It is read, but not continued. Within a format, columns may be added to missions and timesteps: a file that
-// lacks one is read with the field's initial value in its place.
+// lacks one is read with the field's initial value in its place. failures got its kind within format 2, too.
 #pragma once
 
 #include <string>
@@ -45,6 +45,9 @@ FileKind CheckFile(Connection& database, FileUse use);
 
 // Creates the tables and writes the recipe. Call it in a transaction.
 void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& layout);
+
+// Adds the column that a file of format 2 may lack. Call it in a transaction.
+void AddFailureKind(Connection& database);
 
 // Adds identities of code to those that the file knows.
 void AddCode(Connection& database, const CodeIdentities& code);

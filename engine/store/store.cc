@@ -60,9 +60,15 @@ class SqliteStore final : public ResultStore {
     });
   }
 
-  void PutFailure(const RunId& id, const std::string& message) override {
+  std::vector<RunId> Failed() const override {
+    std::vector<RunId> failed;
+    for (const FailedMission& failure : ReadFailures(file_.database(), layout_)) failed.push_back(failure.id);
+    return failed;
+  }
+
+  void PutFailure(const RunId& id, const Failure& failure) override {
     const std::int64_t scenario = layout_.Scenario(id);  // throws before the group is touched
-    InGroup([&] { writer_.InsertFailure(id, scenario, layout_.seed, message); });
+    InGroup([&] { writer_.InsertFailure(id, scenario, layout_.seed, failure); });
   }
 
   std::vector<DamagedMission> FindDamage() override { return ed3r::FindDamage(file_.database(), layout_); }

@@ -7,8 +7,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <type_traits>
+#include <vector>
 
 #include "engine/core/random.h"
+#include "engine/store/checksums.h"
+#include "engine/store/columns.h"
 #include "engine/store/digest.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
@@ -50,6 +53,36 @@ class Stopwatch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+void PrintChecksumShare(const RecordTables& tables, const RunLayout& layout,
+                        const std::vector<MissionRecord>& records, double puts_s) {
+  const Stopwatch sums;
+  std::size_t digits = 0;
+  for (std::size_t i = 0; i < records.size(); ++i)
+    digits += tables.Of(layout, {0, 0, static_cast<int>(i)}, records[i]).mission.size();
+  fmt::print("checksums          {:8.1f} % of putting ({} digits)\n", 100 * sums.Seconds() / puts_s, digits);
+}
+
+// The same rows as the reader gives, by the same statements, compared with nothing.
+double ReadUnchecked(const std::string& dir, double& sum) {
+  Connection database((std::filesystem::path(dir) / kResultsFile).string(), Connection::Access::kReadOnly);
+  const RecordTables tables(database);
+  const Stopwatch watch;
+  Statement missions(database, fmt::format("SELECT mission, {} FROM missions ORDER BY run, mission",
+                                           tables.missions().selection()));
+  Statement steps(database, fmt::format("SELECT {} FROM timesteps WHERE run = 0 AND mission = ? ORDER BY k",
+                                        tables.timesteps().selection()));
+  MissionRecord record;
+  while (missions.Step()) {
+    ReadColumns(missions, 1, record);
+    record.steps.clear();
+    steps.Bind(0, missions.Int(0));
+    while (steps.Step()) ReadColumns(steps, 0, record.steps.emplace_back());
+    steps.Reset();
+    for (const TimestepRecord& step : record.steps) sum += step.total_j;
+  }
+  return watch.Seconds();
+}
+
 void Write(const std::string& dir, const RunLayout& layout, int missions, int timesteps) {
   std::vector<MissionRecord> records;
   for (int i = 0; i < missions; ++i) records.push_back(Draw(static_cast<std::uint32_t>(i), timesteps));
@@ -62,7 +95,10 @@ void Write(const std::string& dir, const RunLayout& layout, int missions, int ti
     if (i % 400 == 399) store->Commit();
   }
   store->Commit();
-  fmt::print("put and commit     {:8.0f} rows/s\n", rows / puts.Seconds());
+  const double puts_s = puts.Seconds();
+  fmt::print("put and commit     {:8.0f} rows/s\n", rows / puts_s);
+  Connection database((std::filesystem::path(dir) / kResultsFile).string(), Connection::Access::kReadOnly);
+  PrintChecksumShare(RecordTables(database), layout, records, puts_s);
   store.reset();
   fmt::print("open to close      {:8.0f} rows/s\n", rows / all.Seconds());
   const auto bytes = std::filesystem::file_size(std::filesystem::path(dir) / kResultsFile);
@@ -75,7 +111,12 @@ void Read(const std::string& dir, double rows) {
   const Stopwatch steps;
   double sum = 0;
   reader.ForEachTimestep(0, 0, [&](int, const TimestepRecord& step) { sum += step.total_j; });
-  fmt::print("timesteps read     {:8.0f} rows/s (sum {:.6g})\n", rows / steps.Seconds(), sum);
+  const double checked_s = steps.Seconds();
+  fmt::print("timesteps read     {:8.0f} rows/s (sum {:.6g})\n", rows / checked_s, sum);
+  double again = 0;
+  const double unchecked_s = ReadUnchecked(dir, again);
+  fmt::print("without checksums  {:8.0f} rows/s (sum {:.6g}): checking takes {:.2f} times as long\n",
+             rows / unchecked_s, again, checked_s / unchecked_s);
   const Stopwatch digest;
   const std::string text = DigestOf(reader);
   fmt::print("digest             {:8.0f} rows/s ({:.2f} s, {:.8})\n", rows / digest.Seconds(),

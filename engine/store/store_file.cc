@@ -85,6 +85,7 @@ void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout, Othe
   database_->Execute("PRAGMA secure_delete = OFF");  // Debian's default wipes freed space
   Transaction transaction(*database_, Transaction::Kind::kWrite);
   empty ? CreateTables(*database_, recipe, layout) : AddCode(*database_, recipe.code);
+  AddFailureKind(*database_);
   transaction.Commit();
 }
 

@@ -107,6 +107,7 @@ FolderResult WriteReportFolder(const Report& report, const RunResults& results,
   if (!options.force) CheckFolder(base);
   const Provenance provenance = ReadProvenance(options.dir);
   MakeFolder(base);
+  for (const fs::path& folder : {base, base / "tables", figures}) RemoveLeftovers(folder);
   // First: a report that did not come to its end is known as one.
   WriteFile(base / kManifest, ManifestJson(provenance).dump(2) + '\n');
   WriteReport(report, options.out);

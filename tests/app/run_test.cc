@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -92,13 +94,16 @@ TEST(RunTest, AKillLosesLittleAndTheSameCommandContinues) {
   EXPECT_EQ(Fly("rbs.yaml", "--missions 250", scratch / "killed"), whole);
 }
 
-TEST(RunTest, CtrlCKeepsWhatIsStoredAndExitsWith130) {
-  const ScratchFolder scratch;
-  const int status = RunAndSignal("rbs.yaml", "2000", scratch / "run", SIGINT, 10);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_GE(DoneMissions(scratch / "run"), 10);
-  EXPECT_LT(DoneMissions(scratch / "run"), 2000);
+TEST(RunTest, CtrlCExitsWith130AndABatchSystemsSignalWith75AndBothKeepWhatIsStored) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) {
+    const ScratchFolder scratch;
+    const int status = RunAndSignal("rbs.yaml", "2000", scratch / "run", signal, 10);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), signal == SIGINT ? 130 : 75);
+    EXPECT_GE(DoneMissions(scratch / "run"), 10);
+    EXPECT_LT(DoneMissions(scratch / "run"), 2000);
+    EXPECT_EQ(Ed3r("verify " + (scratch / "run").string()).status, 0);
+  }
 }
 
 TEST(RunTest, ARunThatIsCompleteFliesNothingAgain) {
@@ -153,6 +158,46 @@ TEST(RunTest, FailedMissionsAreRecordedAndTheSweepGoesOn) {
   EXPECT_NE(status["failures"][0]["message"].get<std::string>().find("the mission does not end"),
             std::string::npos);
   EXPECT_EQ(status["failures"][0]["seed"], 20260101);
+  EXPECT_EQ(status["failures"][0]["kind"], "mission-ends");
+  EXPECT_EQ(status["failure_kinds"], nlohmann::json({{"mission-ends", failed}}));
+  const std::string text = Ed3r("status " + (scratch / "run").string()).out;
+  EXPECT_NE(text.find(fmt::format("failed, mission-ends: {} mission", failed)), std::string::npos) << text;
+}
+
+TEST(RunTest, OnlyWhatHasFailedIsFlownAgainWhereAsked) {
+  const ScratchFolder scratch;
+  const std::string run = fmt::format("run {}rbs.yaml --missions 12 --set mission.max_timesteps=8 --out {}",
+                                      kSweeps, (scratch / "run").string());
+  ASSERT_EQ(Ed3r(run + " --quiet --shard 1/2").status, 3);
+  const auto counts = [&] {
+    const auto arm =
+        nlohmann::json::parse(Ed3r("status --json " + (scratch / "run").string()).out)["arms"][0];
+    return std::array<std::int64_t, 3>{arm["done"], arm["failed"], arm["missing"]};
+  };
+  const auto before = counts();
+  EXPECT_EQ(before[2], 6);
+  const CommandResult again = Ed3r(run + " --only-failed");
+  EXPECT_EQ(again.status, 3) << "they fail again";
+  EXPECT_NE(again.out.find(fmt::format("{} failed", before[1])), std::string::npos) << again.out;
+  EXPECT_EQ(counts(), before) << "what is missing is left";
+}
+
+TEST(RunTest, StatusSeesWhatIsDamaged) {
+  const ScratchFolder scratch;
+  Fly("rbs.yaml", "--missions 4", scratch / "run");
+  EXPECT_EQ(Ed3r("status " + (scratch / "run").string()).status, 0);
+  const std::string change = "UPDATE timesteps SET scs = scs + 1e-9 WHERE mission = 2 AND k = 1";
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open((scratch / "run" / "results.sqlite").c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, change.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(database);
+  const CommandResult status = Ed3r("status " + (scratch / "run").string());
+  EXPECT_EQ(status.status, 1);
+  EXPECT_NE(status.out.find("damaged: 1 mission, the first stage online, arm rbs, mission 2: its timesteps"),
+            std::string::npos)
+      << status.out;
+  const auto json = nlohmann::json::parse(Ed3r("status --json " + (scratch / "run").string()).out);
+  EXPECT_EQ(json["damaged"].size(), 1u);
 }
 
 TEST(RunTest, AnotherSweepInTheSameFolderIsRefused) {

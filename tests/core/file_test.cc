@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -105,6 +107,45 @@ TEST_F(FileTest, PlacesThatCannotBeWrittenAreNamed) {
   WriteFile(folder_ / "file", "x");
   EXPECT_EQ(Refusal([&] { MakeFolder(folder_ / "file" / "below"); }),
             "file/below: cannot be made: Not a directory");
+}
+
+// As a process leaves one behind that is killed while it writes.
+fs::path KilledWhileWriting(const fs::path& path) {
+  const pid_t child = fork();
+  if (child == 0) {
+    AtomicFile file(path);
+    file.Write(std::string(200'000, 'x'));
+    std::raise(SIGKILL);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  for (const auto& entry : fs::directory_iterator(path.parent_path()))
+    if (entry.path().filename().string().starts_with(".ed3r-")) return entry.path();
+  return {};
+}
+
+TEST_F(FileTest, WhatAKilledProcessLeftIsRemovedAndNothingElse) {
+  const fs::path left = KilledWhileWriting(folder_ / "x");
+  ASSERT_FALSE(left.empty());
+  AtomicFile writing(folder_ / "y");
+  for (const char* other : {".ed3r-notes.tmp", "ed3r-0123456789abcdef.tmp", ".ed3r-0123456789abcdef.txt"})
+    std::ofstream(folder_ / other) << "mine";
+  EXPECT_EQ(RemoveLeftovers(folder_), 1);
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_EQ(Entries(), 4) << "of another writer, and three that are not ours";
+  writing.Commit();
+  EXPECT_EQ(RemoveLeftovers(folder_), 0);
+  EXPECT_EQ(RemoveLeftovers(folder_ / "none"), 0);
+}
+
+TEST_F(FileTest, WhatAnotherMachineLeftIsRemovedAfterADay) {
+  const fs::path left = KilledWhileWriting(folder_ / "x");
+  std::string name = left.filename().string();
+  name[6] = name[6] == '0' ? '1' : '0';  // the first digit of the machine
+  fs::rename(left, folder_ / name);
+  EXPECT_EQ(RemoveLeftovers(folder_), 0) << "its locks cannot be seen from here";
+  fs::last_write_time(folder_ / name, fs::file_time_type::clock::now() - std::chrono::hours(25));
+  EXPECT_EQ(RemoveLeftovers(folder_), 1);
 }
 
 TEST_F(FileTest, ADiskThatIsFullLeavesTheOldFile) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/check.h"
+#include "engine/mission/invariants.h"
 
 namespace ed3r {
 namespace {

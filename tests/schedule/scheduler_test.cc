@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "engine/core/interrupt.h"
+#include "engine/mission/invariants.h"
 #include "engine/schedule/todo.h"
 #include "tests/store/store_fixture.h"
 
@@ -50,7 +51,8 @@ class FakeStore final : public ResultStore {
     if (!oldest_) oldest_ = steady_clock::now();
     ids.insert(id);
   }
-  void PutFailure(const RunId&, const std::string&) override { ++failures; }
+  std::vector<RunId> Failed() const override { return {}; }
+  void PutFailure(const RunId&, const Failure&) override { ++failures; }
   std::vector<DamagedMission> FindDamage() override { return {}; }
   void Remove(const std::vector<DamagedMission>&) override {}
   void PutNetworks(const FlownNetworks&) override {}
@@ -139,19 +141,25 @@ TEST(SchedulerTest, AMissionThatThrowsIsAFailedOneAndTheSweepGoesOn) {
     if (id == RunId{0, 0, 3}) throw std::runtime_error("the battery caught fire");
     if (id == RunId{2, 0, 5}) throw UserError("no such model");
     if (id == RunId{2, 1, 0}) throw 42;
+    if (id == RunId{2, 1, 2}) throw std::bad_alloc();
+    if (id == RunId{2, 1, 3}) throw BrokenInvariant(Invariant::kPositionInWorld, "timestep 3: z_m is -2");
     if (id == RunId{2, 1, 1}) record.steps.assign(2, TimestepRecord{});  // two timesteps with one number
     return record;
   };
   {
     const auto store = OpenTest(temp / "run");
     const RunSummary summary = RunMissions(TodoOf(*store), fly, *store, {.threads = 2});
-    EXPECT_EQ(summary.stored, 96);
-    EXPECT_EQ(summary.failed, 4);
+    EXPECT_EQ(summary.stored, 94);
+    EXPECT_EQ(summary.failed, 6);
     EXPECT_EQ(summary.dropped, 0);
     EXPECT_FALSE(summary.interrupted);
   }
   const std::vector<FailedMission> failures = ResultReader(temp / "run").Failures();
-  ASSERT_EQ(failures.size(), 4u);
+  ASSERT_EQ(failures.size(), 6u);
+  std::vector<std::string> kinds;
+  for (const FailedMission& failure : failures) kinds.push_back(failure.kind);
+  EXPECT_EQ(kinds, (std::vector<std::string>{"exception", "bad-input", "exception", "broken-check",
+                                             "out-of-memory", "position-in-world"}));
   EXPECT_EQ(failures[0].message, "the battery caught fire");
   EXPECT_EQ(failures[0].scenario, 3);
   EXPECT_EQ(failures[0].seed, 7u);
@@ -161,8 +169,10 @@ TEST(SchedulerTest, AMissionThatThrowsIsAFailedOneAndTheSweepGoesOn) {
   EXPECT_TRUE(Contains(failures[3].message, "timestep 0 follows timestep 0"));
   {
     const auto store = OpenTest(temp / "run");
-    EXPECT_EQ(TodoOf(*store), (std::vector<RunId>{{0, 0, 3}, {2, 0, 5}, {2, 1, 0}, {2, 1, 1}}));
-    EXPECT_EQ(RunMissions(TodoOf(*store), FlyTest, *store, {.threads = 2}).stored, 4);
+    EXPECT_EQ(TodoOf(*store),
+              (std::vector<RunId>{{0, 0, 3}, {2, 0, 5}, {2, 1, 0}, {2, 1, 1}, {2, 1, 2}, {2, 1, 3}}));
+    EXPECT_EQ(store->Failed(), TodoOf(*store));
+    EXPECT_EQ(RunMissions(TodoOf(*store), FlyTest, *store, {.threads = 2}).stored, 6);
   }
   EXPECT_TRUE(ResultReader(temp / "run").Failures().empty());
   EXPECT_EQ(DigestOfDir(temp / "run"), WholeDigest());
@@ -191,6 +201,27 @@ TEST(SchedulerTest, StopDropsMissionsInFlightAndKeepsTheRest) {
     EXPECT_LE(flown, 31) << "nothing is begun after the stop";
   }
   EXPECT_TRUE(ResultReader(temp / "run").Failures().empty());
+  const auto store = OpenTest(temp / "run");
+  RunMissions(TodoOf(*store), FlyTest, *store, {.threads = 2});
+  EXPECT_EQ(DigestOfDir(temp / "run"), WholeDigest());
+}
+
+// Its message cannot be copied, as when there is no memory for it.
+struct Untold : std::exception {
+  const char* what() const noexcept override { return nullptr; }
+};
+
+TEST(SchedulerTest, AFailureThatCannotBeToldEndsTheRunAndWhatCameBeforeIsKept) {
+  const TempDir temp;
+  {
+    const auto store = OpenTest(temp / "run");
+    const auto fly = [&](const RunId& id, const std::atomic<bool>&) {
+      if (id == RunId{2, 0, 5}) throw Untold();
+      return TestRecord(id);
+    };
+    EXPECT_THROW(RunMissions(TodoOf(*store), fly, *store, {.threads = 2}), std::logic_error);
+  }
+  EXPECT_GE(ResultReader(temp / "run").Stored().size(), 40u);
   const auto store = OpenTest(temp / "run");
   RunMissions(TodoOf(*store), FlyTest, *store, {.threads = 2});
   EXPECT_EQ(DigestOfDir(temp / "run"), WholeDigest());

@@ -119,9 +119,9 @@ TEST_F(MergeTest, AMissingDirectoryIsRefused) {
 TEST_F(MergeTest, AFailureCountsOnlyWhereNobodyHasTheMission) {
   {
     const auto store = ResultStore::Open(temp_ / "failed", TestRecipe(), TestLayout());
-    store->PutFailure({0, 0, 0}, "flown by shard 0");
-    store->PutFailure({0, 0, 1}, "flown by shard 1");
-    store->PutFailure({0, 0, 2}, "flown by shard 2");
+    store->PutFailure({0, 0, 0}, {"exception", "flown by shard 0"});
+    store->PutFailure({0, 0, 1}, {"exception", "flown by shard 1"});
+    store->PutFailure({0, 0, 2}, {"exception", "flown by shard 2"});
     store->Commit();
   }
   const MergeSummary summary = MergeStores(temp_ / "out", {Shard(0), temp_ / "failed", Shard(1)});

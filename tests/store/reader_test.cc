@@ -66,7 +66,7 @@ TEST(ReaderTest, StatusCountsDoneFailedAndMissing) {
   {
     const auto store = ResultStore::Open(temp / "run", TestRecipe(), TestLayout());
     for (int i = 0; i < 12; ++i) store->Put({0, 0, i}, TestRecord({0, 0, i}), 0.5);
-    store->PutFailure({0, 0, 30}, "broken");
+    store->PutFailure({0, 0, 30}, {"exception", "broken"});
     store->Put({2, 1, 3}, TestRecord({2, 1, 3}), 0.5);
     store->Commit();
   }

@@ -76,7 +76,7 @@ TEST(StoreTest, MissionsOutsideThePlanAreRefused) {
   const auto store = OpenTest(temp / "run");
   for (const RunId& id : {RunId{0, 0, 40}, RunId{0, 1, 0}, RunId{1, 0, 0}, RunId{3, 0, 0}, RunId{0, 0, -1}}) {
     EXPECT_THROW(store->Put(id, MissionRecord{}, 0), InternalError);
-    EXPECT_THROW(store->PutFailure(id, "x"), InternalError);
+    EXPECT_THROW(store->PutFailure(id, {"exception", "x"}), InternalError);
   }
 }
 
@@ -84,9 +84,9 @@ TEST(StoreTest, FailuresAreKeptUntilTheMissionSucceeds) {
   const TempDir temp;
   {
     const auto store = OpenTest(temp / "run");
-    store->PutFailure({2, 1, 4}, "first\nmessage");
-    store->PutFailure({2, 1, 4}, "second message");
-    store->PutFailure({2, 0, 1}, "other");
+    store->PutFailure({2, 1, 4}, {"exception", "first\nmessage"});
+    store->PutFailure({2, 1, 4}, {"ledger-adds-up", "second message"});
+    store->PutFailure({2, 0, 1}, {"exception", "other"});
     store->Commit();
     EXPECT_TRUE(store->Stored().empty());
   }
@@ -95,6 +95,7 @@ TEST(StoreTest, FailuresAreKeptUntilTheMissionSucceeds) {
     ASSERT_EQ(failures.size(), 2u);
     EXPECT_EQ(failures[0].id, (RunId{2, 0, 1}));
     EXPECT_EQ(failures[1].id, (RunId{2, 1, 4}));
+    EXPECT_EQ(failures[1].kind, "ledger-adds-up");
     EXPECT_EQ(failures[1].message, "second message");
     EXPECT_EQ(failures[1].scenario, 5004);
     EXPECT_EQ(failures[1].seed, 7u);

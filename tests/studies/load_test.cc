@@ -27,7 +27,7 @@ MissionRecord Mission(int number) {
 void WriteRun(const std::string& dir) {
   const auto store = ResultStore::Open(dir, TestRecipe(), Layout());
   for (const int number : {3, 1, 4, 0, 2}) store->Put({2, 1, number}, Mission(number), 0.5);
-  store->PutFailure({2, 1, 6}, "a broken invariant");
+  store->PutFailure({2, 1, 6}, {"exception", "a broken invariant"});
   store->Commit();
 }
 

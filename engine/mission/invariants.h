@@ -1,0 +1,66 @@
+// What holds in every mission, whatever flew it. Checked in every build at the end of each mission, at a cost that does
+// not show beside flying it. A mission that breaks one is a failed mission of that class, never a result.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+
+#include "engine/config/field.h"
+#include "engine/core/check.h"
+#include "engine/mission/record.h"
+#include "engine/robot/energy.h"
+#include "engine/world/scene.h"
+
+namespace ed3r {
+
+enum class Invariant {
+  kMissionEnds,   // within mission.max_timesteps
+  kValuesFinite,  // every stored number, predictions without a network apart
+  kTimeMonotone,  // timesteps are numbered 1, 2, ..., no part of one is negative, and their sum is the duration
+  kLedgerAddsUp,  // energies are powers times times, parts are totals, and the battery gave what was used
+  kBatteryNotNegative,  // after every timestep
+  kPositionInWorld,     // inside the box and not in the ground
+  kProbabilityInRange   // scores, shares of the image and exploration rates are in [0, 1]
+};
+template <>
+struct EnumNames<Invariant> {
+  static constexpr EnumName<Invariant> kNames[] = {{Invariant::kMissionEnds, "mission-ends"},
+                                                   {Invariant::kValuesFinite, "values-finite"},
+                                                   {Invariant::kTimeMonotone, "time-monotone"},
+                                                   {Invariant::kLedgerAddsUp, "ledger-adds-up"},
+                                                   {Invariant::kBatteryNotNegative, "battery-not-negative"},
+                                                   {Invariant::kPositionInWorld, "position-in-world"},
+                                                   {Invariant::kProbabilityInRange, "probability-in-range"}};
+};
+
+// what() is one line that begins with the invariant's name.
+class BrokenInvariant : public InternalError {
+ public:
+  BrokenInvariant(Invariant invariant, const std::string& detail);
+  Invariant Which() const { return invariant_; }
+
+ private:
+  Invariant invariant_;
+};
+
+// What a record is held against.
+struct MissionLimits {
+  const MovementPower& power;
+  double battery_j;  // at the start
+  const Scene& scene;
+  double gust_mps = 0.0;  // the robot may be carried out of the box by what it cannot hold
+};
+
+// Throws BrokenInvariant, the first in the order of the enumeration above.
+void CheckInvariants(const MissionRecord& record, const MissionLimits& limits);
+
+// The parts of it.
+void CheckFinite(const MissionRecord& record);
+void CheckTime(const MissionRecord& record);
+void CheckLedger(const MissionRecord& record, const MovementPower& power, double battery_j);
+void CheckBattery(const MissionRecord& record);
+void CheckPositions(const MissionRecord& record, const Scene& scene, double gust_mps);
+void CheckProbabilities(const MissionRecord& record);
+
+}  // namespace ed3r

@@ -1,0 +1,147 @@
+// The energy model against numbers worked out by hand, with every factor far from 1.
+#include "engine/robot/energy.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/robot/ledger.h"
+#include "engine/robot/power/power_models.h"
+
+namespace ed3r {
+namespace {
+
+RobotConfig Heavy() {
+  RobotConfig robot;
+  robot.mass_kg = 3.0;
+  robot.propeller_radius_m = 0.2;
+  robot.propellers = 6;
+  robot.height_m = 0.3, robot.width_m = 0.5, robot.depth_m = 0.7;
+  robot.speed_mps = 4.0;
+  robot.drag_horizontal = 0.6, robot.drag_vertical = 0.4;
+  return robot;
+}
+
+EnvironmentConfig Thin() {
+  EnvironmentConfig environment;
+  environment.air_density_kgm3 = 0.8;
+  environment.gravity_mps2 = 9.0;
+  return environment;
+}
+
+constexpr double kDiscM2 = 6 * std::numbers::pi * 0.04;
+
+TEST(EnergyTest, HoverIsTheIdealPowerOfTheWeight) {
+  const double weight_n = 27.0;
+  const double expected_w = weight_n * std::sqrt(weight_n / (2 * 0.8 * kDiscM2));
+  EXPECT_NEAR(MovementPowerOf(Heavy(), Thin(), {}).hover_w, expected_w, 1e-9 * expected_w);
+  EXPECT_NEAR(IdealHoverPowerW(3.0, 0.8, 9.0, kDiscM2), expected_w, 1e-9 * expected_w);
+  EnergyConfig printed;  // as the paper prints it, with the density above the line
+  printed.hover_form = HoverForm::kPrinted;
+  const double printed_w = std::pow(3.0, 1.5) * std::sqrt(729.0 / 12 * 0.8 * std::numbers::pi * 0.04);
+  EXPECT_NEAR(MovementPowerOf(Heavy(), Thin(), printed).hover_w, printed_w, 1e-9 * printed_w);
+}
+
+TEST(EnergyTest, HorizontalFlightPaysDragOnTopOfHover) {
+  const MovementPower power = MovementPowerOf(Heavy(), Thin(), {});
+  const double drag_w = 0.5 * 0.8 * 0.6 * (0.3 * 0.5) * 64;
+  EXPECT_NEAR(power.horizontal_w - power.hover_w, drag_w, 1e-9 * drag_w);
+}
+
+TEST(EnergyTest, VerticalFlightInEachForm) {
+  const double drag = 0.5 * 0.8 * 0.4 * (0.5 * 0.7) * 64;
+  EnergyConfig energy;
+  energy.vertical_form = VerticalForm::kPrinted;
+  const MovementPower printed = MovementPowerOf(Heavy(), Thin(), energy);
+  EXPECT_NEAR(printed.ascent_w, 27 + drag, 1e-9);
+  EXPECT_NEAR(printed.descent_w, 27 - drag, 1e-9);
+  energy.vertical_form = VerticalForm::kClimb;
+  const MovementPower climb = MovementPowerOf(Heavy(), Thin(), energy);
+  EXPECT_NEAR(climb.ascent_w - climb.hover_w, 27 * 4.0, 1e-9);
+  EXPECT_EQ(climb.descent_w, 0.0) << "a descent does not charge the battery";
+  RobotConfig slow = Heavy();
+  slow.speed_mps = 0.5;
+  const MovementPower sinking = MovementPowerOf(slow, Thin(), energy);
+  EXPECT_NEAR(sinking.hover_w - sinking.descent_w, 27 * 0.5, 1e-9);
+}
+
+TEST(EnergyTest, EfficiencyDividesWhatThePaperCallsMechanical) {
+  EnergyConfig energy;
+  const MovementPower ideal = MovementPowerOf(Heavy(), Thin(), energy);
+  energy.paper_efficiency = 0.5;
+  const MovementPower real = MovementPowerOf(Heavy(), Thin(), energy);
+  EXPECT_NEAR(real.hover_w, 2 * ideal.hover_w, 1e-9);
+  EXPECT_NEAR(real.horizontal_w, 2 * ideal.horizontal_w, 1e-9);
+  EXPECT_NEAR(real.ascent_w, 2 * ideal.ascent_w, 1e-9);
+  EXPECT_NEAR(real.descent_w, 2 * ideal.descent_w, 1e-9);
+}
+
+// Momentum theory: hover in closed form; a climb at speed V against v_i (V + v_i) = T / (2 rho A), with no drag.
+TEST(EnergyTest, MomentumTheoryInHoverAndClimb) {
+  EnergyConfig energy;
+  energy.model = PowerModel::kMomentum;
+  energy.momentum_efficiency = 0.8, energy.induced_factor = 1.25, energy.profile_share = 0.3;
+  energy.interference = 0.0, energy.drag_area_m2 = 0.0;
+  const MovementPower power = MovementPowerOf(Heavy(), Thin(), energy);
+  const double squared = 27.0 / (2 * 0.8 * kDiscM2), hover_w = 27 * std::sqrt(squared);
+  EXPECT_NEAR(power.hover_w, (1.25 + 0.3) * hover_w / 0.8, 1e-6 * hover_w);
+  const auto axial_w = [&](double climb_mps) {
+    const double induced_mps = -climb_mps / 2 + std::sqrt(climb_mps * climb_mps / 4 + squared);
+    return (1.25 * 27 * induced_mps + 0.3 * hover_w + 27 * climb_mps) / 0.8;
+  };
+  EXPECT_NEAR(power.ascent_w, axial_w(4.0), 1e-6 * hover_w);
+  EXPECT_LT(power.descent_w, power.hover_w);
+  EXPECT_LT(power.horizontal_w, power.hover_w) << "translational lift";
+}
+
+TEST(EnergyTest, SensorsAreBilledForThePeriod) {
+  SensingConfig sensing;
+  sensing.period_s = 2.5, sensing.camera_power_w = 3.0, sensing.lidars = 4, sensing.lidar_power_w = 0.5;
+  EXPECT_NEAR(SensingEnergyJ(sensing), 2.5 * (3.0 + 4 * 0.5), 1e-12);
+}
+
+TEST(EnergyTest, ComputationOfAllFramesOfAPeriod) {
+  SensingConfig sensing;
+  sensing.period_s = 2.0, sensing.camera_fps = 10;
+  CpuConfig cpu;
+  cpu.cores = 3, cpu.flops_per_cycle = 4, cpu.capacitance = 2e-28;
+  const ComputationCost cost = Computation(cpu, sensing, 5.0, 2e9);
+  EXPECT_NEAR(cost.time_s, 20 * 5e9 / (4 * 3 * 2e9), 1e-12);
+  EXPECT_NEAR(cost.energy_j, 2e-28 * 20 * 5e9 * 4e18 / 4, 1e-9);
+}
+
+TEST(EnergyTest, APayloadIsEveryFrame) {
+  SensingConfig sensing;
+  sensing.period_s = 2.0, sensing.camera_fps = 10, sensing.frame_byte = 1000;
+  EXPECT_EQ(PayloadByte(sensing), 20000.0);
+}
+
+// A unit of time and of power for each entry: no two products are equal, so that none can stand in another's place.
+TEST(EnergyTest, EachTimeIsChargedAtItsPower) {
+  const MovementPower power{.hover_w = 2, .horizontal_w = 3, .ascent_w = 5, .descent_w = 7};
+  const StepTime time{.horizontal_s = 11,
+                      .ascent_s = 13,
+                      .descent_s = 17,
+                      .turning_s = 19,
+                      .sensing_s = 23,
+                      .computing_s = 29,
+                      .transmitting_s = 31};
+  const StepEnergy energy = Charge(power, time, {.sensing_j = 37, .computation_j = 41, .transmission_j = 43});
+  EXPECT_EQ(energy.horizontal_j, 33);
+  EXPECT_EQ(energy.ascent_j, 65);
+  EXPECT_EQ(energy.descent_j, 119);
+  EXPECT_EQ(energy.hover_turning_j, 38);
+  EXPECT_EQ(energy.hover_sensing_j, 46);
+  EXPECT_EQ(energy.hover_computing_j, 58);
+  EXPECT_EQ(energy.hover_transmitting_j, 62);
+  EXPECT_EQ(energy.sensing_j, 37);
+  EXPECT_EQ(energy.computation_j, 41);
+  EXPECT_EQ(energy.transmission_j, 43);
+  EXPECT_EQ(energy.MovementJ(), 421);
+  EXPECT_EQ(energy.TotalJ(), 542);
+  EXPECT_EQ(time.TotalS(), 143);
+}
+
+}  // namespace
+}  // namespace ed3r
