@@ -95,7 +95,8 @@ int MakeReportOf(const ReportOptions& options) {
     fmt::print("{}\n{}: index.html, report.txt, report.json, metrics.csv, {} tables, {} figures\n",
                ReportText(report), folder.out, report.tables.size(), written.figures);
   std::fflush(stdout);  // before what goes to the other stream
-  if (!written.note.empty()) fmt::print(stderr, "note: {}\n", written.note);
+  for (const std::string& note : {written.note, written.page_note})
+    if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
   if (written.plot_error.empty()) return kDone;
   fmt::print(stderr, "figures: drawing failed: {}\n", written.plot_error);
   return kFailedInside;

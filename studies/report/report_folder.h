@@ -18,11 +18,13 @@ struct FolderOptions {
 struct FolderResult {
   int figures = 0;         // drawn
   std::string note;        // why figures are missing though nothing failed; "" where none is
+  std::string page_note;   // why index.html is the plain page; "" where it is the interactive one
   std::string plot_error;  // one line where drawing failed; the rest is there
 };
 
 // Writes what WriteReport does, manifest.json (provenance.h), figures/data.json (studies/figures/figure_data.h),
-// figures/ID.png and .svg, figures/README.md with the title and caption of every figure, and index.html. Of the pictures
+// figures/ID.png and .svg, figures/README.md with the title and caption of every figure, and index.html: one file with everything in it (web_page.h),
+// or the plain page (html.h) where its program is not at hand. Of the pictures
 // there, those that an earlier report lists in its data.json are removed, no others. Throws UserError where the run cannot
 // be read, the folder not be written, or where it is not empty and no report (without a manifest.json of one).
 FolderResult WriteReportFolder(const Report& report, const RunResults& results, const FolderOptions& options);
