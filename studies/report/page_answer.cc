@@ -41,19 +41,30 @@ const ArmMetrics* Extreme(const Arms& arms, double (*value)(const ArmMetrics&), 
   });
 }
 
-// "15.4 points more success and 68 % less energy, beyond what chance explains".
+std::string Than(double ours, double theirs, const char* more, const char* less) {
+  return ours >= theirs ? more : less;
+}
+
+// "RBS finds ...: ED³R-75 has 15.4 points more success for 68 % less energy."
 std::string Against(const ArmMetrics& subject, const ArmMetrics& rival) {
-  const double points = Success(subject) - Success(rival);
-  const double share = 100 * (Energy(subject) / Energy(rival) - 1);
-  std::string text = fmt::format("{} {}: {:.1f} points {} success for ", ArmLabel(rival.name), Tells(rival),
-                                 std::abs(points), points < 0 ? "more" : "less");
-  text += fmt::format("{:.0f} % {} energy than {}", std::abs(100 * (Energy(rival) / Energy(subject) - 1)),
-                      share < 0 ? "more" : "less", ArmLabel(subject.name));
+  std::string text =
+      fmt::format("{} {}: {} has {:.1f} points {} success for {:.0f} % {} energy", ArmLabel(rival.name),
+                  Tells(rival), ArmLabel(subject.name), std::abs(Success(subject) - Success(rival)),
+                  Than(Success(subject), Success(rival), "more", "less"),
+                  std::abs(100 * (Energy(subject) / Energy(rival) - 1)),
+                  Than(Energy(subject), Energy(rival), "more", "less"));
   const bool success_open = Overlap(subject["msr_pct"], rival["msr_pct"]);
   const bool energy_open = Overlap(subject["total_energy_kj"], rival["total_energy_kj"]);
-  if (!success_open && !energy_open) return text + "; neither pair of 95 % intervals overlaps.";
-  if (success_open && energy_open) return text + "; both pairs of 95 % intervals overlap.";
-  return text + fmt::format("; the intervals of {} overlap.", success_open ? "success" : "energy");
+  if (!success_open && !energy_open) return text + ", and neither pair of 95 % intervals overlaps.";
+  if (success_open && energy_open) return text + ", but both pairs of 95 % intervals overlap.";
+  return text + fmt::format(", but the 95 % intervals of {} overlap.", success_open ? "success" : "energy");
+}
+
+// "A, B and C".
+std::string Listed(const std::vector<std::string>& names) {
+  if (names.size() == 1) return names.front();
+  const std::vector<std::string> most(names.begin(), names.end() - 1);
+  return fmt::format("{} and {}", fmt::join(most, ", "), names.back());
 }
 
 std::string Preferable(const ArmMetrics& subject, const Arms& arms) {
@@ -64,8 +75,8 @@ std::string Preferable(const ArmMetrics& subject, const Arms& arms) {
   if (names.empty())
     return fmt::format("No other arm has both more success and less energy on average than {}.",
                        ArmLabel(subject.name));
-  return fmt::format("On average {} {} at least as much success for no more energy than {}.",
-                     fmt::join(names, ", "), names.size() == 1 ? "has" : "have", ArmLabel(subject.name));
+  return fmt::format("On average {} {} at least as much success for no more energy than {}.", Listed(names),
+                     names.size() == 1 ? "has" : "have", ArmLabel(subject.name));
 }
 
 std::string Claims(const ClaimStudy& study) {

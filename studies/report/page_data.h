@@ -30,7 +30,7 @@ struct PageDataInputs {
   std::string figures_note;
   // Missions that failed inside the program: {"mission", "message"}.
   nlohmann::ordered_json broken = nlohmann::ordered_json::array();
-  // Mission viewers beside the page: {"mission", "file", "what"}.
+  // Mission viewers beside the page: {"mission", "what", "file"}.
   nlohmann::ordered_json viewers = nlohmann::ordered_json::array();
 };
 

@@ -126,7 +126,8 @@ std::string InteractivePage(const WebBundle& bundle, const PageInputs& plain, co
                                                     .question = plain.provenance.question,
                                                     .report_command = plain.report_command,
                                                     .figures_note = plain.figures_note,
-                                                    .broken = BrokenMissions(reader)});
+                                                    .broken = BrokenMissions(reader),
+                                                    .viewers = options.viewers});
   return SelfContainedPage(plain.report.name + " – ED³R report", bundle, data, ReportContent(plain));
 }
 

@@ -13,6 +13,8 @@ struct FolderOptions {
   bool figures = true;  // draw them; their data are written in any case
   bool force = false;   // write into a folder that holds other things than a report
   std::string command;  // that made it, for the page
+  // Mission viewers that the caller leaves in the folder: {"mission", "what", "file"}.
+  nlohmann::ordered_json viewers = nlohmann::ordered_json::array();
 };
 
 struct FolderResult {

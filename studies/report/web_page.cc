@@ -44,9 +44,10 @@ FoundBundle FindWebBundle(const std::string& name) {
     const std::string file = (WebFolder() / (name + ending)).string();
     std::string why;
     if (!TryReadFile(file, kMaxTextBytes, *content, why))
-      return {
-          std::nullopt,
-          fmt::format("the interactive page is not made: {}: {}; 'scripts/setup --web' makes it", file, why)};
+      return {std::nullopt,
+              fmt::format(
+                  "the interactive page is not made: {} cannot be read ({}); 'scripts/setup --web' makes it",
+                  file, why)};
   }
   return {std::move(bundle), ""};
 }

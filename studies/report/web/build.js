@@ -23,6 +23,7 @@ for (const page of ["report", "viewer"]) {
     logLevel: "warning",
   });
   // A report that is written meanwhile finds the old files or the new ones.
-  for (const ending of ["js", "css"]) renameSync(join(out, `${page}.new.${ending}`), join(out, `${page}.${ending}`));
+  for (const ending of ["js", "css"])
+    renameSync(join(out, `${page}.new.${ending}`), join(out, `${page}.${ending}`));
 }
 console.log(`web: ${out}`);

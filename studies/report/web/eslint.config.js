@@ -2,9 +2,27 @@ import js from "@eslint/js";
 
 const browser = Object.fromEntries(
   [
-    "document", "window", "location", "history", "navigator", "console", "HTMLElement", "ResizeObserver",
-    "requestAnimationFrame", "cancelAnimationFrame", "performance", "matchMedia", "getComputedStyle", "URLSearchParams",
-    "Image", "atob", "setTimeout", "clearTimeout", "addEventListener", "devicePixelRatio",
+    "document",
+    "window",
+    "location",
+    "history",
+    "navigator",
+    "console",
+    "HTMLElement",
+    "ResizeObserver",
+    "requestAnimationFrame",
+    "cancelAnimationFrame",
+    "performance",
+    "matchMedia",
+    "getComputedStyle",
+    "URLSearchParams",
+    "Image",
+    "atob",
+    "setTimeout",
+    "clearTimeout",
+    "addEventListener",
+    "Event",
+    "devicePixelRatio",
   ].map((name) => [name, "readonly"]),
 );
 const node = { process: "readonly", console: "readonly", URL: "readonly", setTimeout: "readonly" };

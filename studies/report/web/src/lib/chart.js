@@ -28,7 +28,12 @@ export function canvas(place, { height, label, margin }) {
     { viewBox: `0 0 ${full} ${height}`, width: full, height, role: "group", "aria-label": label },
     inner,
   );
-  return { root, inner, width: full - margin.left - margin.right, height: height - margin.top - margin.bottom };
+  return {
+    root,
+    inner,
+    width: full - margin.left - margin.right,
+    height: height - margin.top - margin.bottom,
+  };
 }
 
 /** Axes at the left and below, with what they count. */
@@ -36,12 +41,23 @@ export function axes(ground, x, y, labels, ticks = {}) {
   const { inner, width, height } = ground;
   if (x) {
     const axis = svg("g", { class: "axis", transform: `translate(0,${height})`, "aria-hidden": "true" });
-    select(axis).call(axisBottom(x).ticks(ticks.x ?? Math.max(3, width / 90), ticks.xFormat).tickSizeOuter(0));
-    inner.append(axis, svg("text", { class: "axis-label", x: width, y: height + 36, "text-anchor": "end" }, labels.x));
+    select(axis).call(
+      axisBottom(x)
+        .ticks(ticks.x ?? Math.max(3, width / 90), ticks.xFormat)
+        .tickSizeOuter(0),
+    );
+    inner.append(
+      axis,
+      svg("text", { class: "axis-label", x: width, y: height + 36, "text-anchor": "end" }, labels.x),
+    );
   }
   if (y) {
     const axis = svg("g", { class: "axis grid", "aria-hidden": "true" });
-    select(axis).call(axisLeft(y).ticks(ticks.y ?? 5, ticks.yFormat).tickSize(-width));
+    select(axis).call(
+      axisLeft(y)
+        .ticks(ticks.y ?? 5, ticks.yFormat)
+        .tickSize(-width),
+    );
     inner.append(axis, svg("text", { class: "axis-label", x: -8, y: -12, "text-anchor": "start" }, labels.y));
   }
 }

@@ -23,7 +23,8 @@ export function withInterval(cell, metric) {
   return `${number(cell.value, metric.decimals)} ${metric.unit}${range && ` (${range})`}`.trim();
 }
 
-export const pValue = (p) => (p === null || p === undefined ? "" : p < 0.0001 ? "<0.0001" : p.toFixed(p < 0.01 ? 4 : 3));
+export const pValue = (p) =>
+  p === null || p === undefined ? "" : p < 0.0001 ? "<0.0001" : p.toFixed(p < 0.01 ? 4 : 3);
 
 export const count = (n) => n.toLocaleString("en-GB");
 

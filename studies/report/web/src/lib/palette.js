@@ -36,9 +36,26 @@ export const OUTCOMES = [
 ];
 
 // Cividis, sampled: even in lightness, the same for colour-blind readers.
-const CIVIDIS = ["#00224e", "#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74", "#c3b369", "#e1cc55", "#fee838"];
+const CIVIDIS = [
+  "#00224e",
+  "#123570",
+  "#3b496c",
+  "#575d6d",
+  "#707173",
+  "#8a8678",
+  "#a59c74",
+  "#c3b369",
+  "#e1cc55",
+  "#fee838",
+];
 
-/** A colour for a share of 0 to 1, and whether its ground asks for dark letters. */
+/** Relative luminance, as WCAG has it. */
+function luminance(parts) {
+  const [r, g, b] = parts.map((part) => (part <= 10 ? part / 3294.6 : ((part / 255 + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
+
+/** A colour for a share of 0 to 1, and black or white letters for it, whichever reads better. */
 export function shareColour(share) {
   const place = Math.max(0, Math.min(1, share)) * (CIVIDIS.length - 1);
   const low = Math.floor(place),
@@ -47,5 +64,6 @@ export function shareColour(share) {
   const mixed = [1, 3, 5].map((at) =>
     Math.round(part(CIVIDIS[low], at) + (place - low) * (part(CIVIDIS[high], at) - part(CIVIDIS[low], at))),
   );
-  return { fill: `rgb(${mixed.join(",")})`, ink: place > 4.6 ? "#14181b" : "#ffffff" };
+  const ground = luminance(mixed) + 0.05;
+  return { fill: `rgb(${mixed.join(",")})`, ink: ground / 0.05 > 1.05 / ground ? "#000000" : "#ffffff" };
 }

@@ -16,7 +16,7 @@ export const START = Object.freeze({
 export function parseFragment(fragment, allowed = {}) {
   const state = { ...START };
   for (const [key, text] of new URLSearchParams(fragment.replace(/^#/, ""))) {
-    if (!(key in START)) continue;
+    if (!Object.hasOwn(START, key)) continue;
     const value = key === "arms" ? text.split("~").filter((arm) => !allowed.arm || allowed.arm(arm)) : text;
     if (key !== "arms" && allowed[key] && !allowed[key](value)) continue;
     state[key] = value;

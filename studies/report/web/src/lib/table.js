@@ -19,9 +19,13 @@ export function sortedTable(columns, rows, options = {}) {
     ),
   );
   const draw = () => {
-    const shown = by < 0 ? rows : [...rows].sort((a, b) => (down ? -1 : 1) * order(columns[by].key(a), columns[by].key(b)));
+    const shown =
+      by < 0
+        ? rows
+        : [...rows].sort((a, b) => (down ? -1 : 1) * order(columns[by].key(a), columns[by].key(b)));
     heads.forEach((head, i) => {
-      if (columns[i].key) head.setAttribute("aria-sort", i !== by ? "none" : down ? "descending" : "ascending");
+      if (columns[i].key)
+        head.setAttribute("aria-sort", i !== by ? "none" : down ? "descending" : "ascending");
     });
     body.replaceChildren(
       ...shown.map((row) =>
@@ -29,7 +33,11 @@ export function sortedTable(columns, rows, options = {}) {
           "tr",
           { class: options.rowClass?.(row) },
           columns.map((column, i) =>
-            el(i === 0 ? "th" : "td", { scope: i === 0 && "row", class: column.left && "left" }, column.text(row)),
+            el(
+              i === 0 ? "th" : "td",
+              { scope: i === 0 && "row", class: column.left && "left" },
+              column.text(row),
+            ),
           ),
         ),
       ),
@@ -45,7 +53,13 @@ export function sortedTable(columns, rows, options = {}) {
   return el(
     "div",
     { class: "wide", tabindex: 0, role: "region", "aria-label": options.caption },
-    el("table", {}, el("caption", { class: "hidden" }, options.caption), el("thead", {}, el("tr", {}, heads)), body),
+    el(
+      "table",
+      {},
+      el("caption", { class: "hidden" }, options.caption),
+      el("thead", {}, el("tr", {}, heads)),
+      body,
+    ),
   );
 }
 

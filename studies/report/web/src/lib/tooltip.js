@@ -1,9 +1,10 @@
 // One box that follows the pointer or the focus. Lines are text.
 import { el } from "./dom.js";
 
-const box = el("div", { id: "tooltip", role: "tooltip", hidden: true });
+let box;
 
 export function installTooltip() {
+  box = el("div", { id: "tooltip", role: "tooltip", hidden: true });
   document.body.append(box);
   addEventListener("keydown", (event) => {
     if (event.key === "Escape") hideTooltip();

@@ -68,7 +68,9 @@ function stacked(model, store, spec) {
       spec.parts.map((part) =>
         el(
           part.choose ? "button" : "span",
-          part.choose ? { type: "button", class: "key-button", onclick: () => store.toggle("outcome", part.choose) } : {},
+          part.choose
+            ? { type: "button", class: "key-button", onclick: () => store.toggle("outcome", part.choose) }
+            : {},
           el("span", { class: "square", style: `--c:var(${part.variable})`, "aria-hidden": "true" }),
           part.label,
         ),
@@ -93,15 +95,38 @@ function rowsOf(model, spec, state) {
     if (!whisker) return [];
     const parts = spec.parts.map((part) => {
       const cell = model.cell(arm, part.metric, filter);
-      return { part, cell, size: Math.max(0, value(cell) - (part.minus ? value(model.cell(arm, part.minus, filter)) : 0)) };
+      return {
+        part,
+        cell,
+        size: Math.max(0, value(cell) - (part.minus ? value(model.cell(arm, part.minus, filter)) : 0)),
+      };
     });
-    return [{ arm, parts, whisker, faint: spec.ofAll && state.outcome !== "all" ? state.outcome : null, paper: all ? arm.paper[spec.whisker] : null }];
+    return [
+      {
+        arm,
+        parts,
+        whisker,
+        faint: spec.ofAll && state.outcome !== "all" ? state.outcome : null,
+        paper: all ? arm.paper[spec.whisker] : null,
+      },
+    ];
   });
 }
 
 function draw(place, rows, spec, model, store) {
-  const ground = canvas(place, { height: rows.length * ROW + MARGIN.top + MARGIN.bottom, label: spec.title, margin: MARGIN });
-  const longest = Math.max(1, ...rows.flatMap((row) => [row.whisker.hi ?? 0, row.paper?.value ?? 0, row.parts.reduce((sum, p) => sum + p.size, 0)]));
+  const ground = canvas(place, {
+    height: rows.length * ROW + MARGIN.top + MARGIN.bottom,
+    label: spec.title,
+    margin: MARGIN,
+  });
+  const longest = Math.max(
+    1,
+    ...rows.flatMap((row) => [
+      row.whisker.hi ?? 0,
+      row.paper?.value ?? 0,
+      row.parts.reduce((sum, p) => sum + p.size, 0),
+    ]),
+  );
   const x = scaleLinear([0, spec.full ?? longest * 1.03], [0, ground.width]);
   axes(ground, x, null, { x: spec.axis }, { x: Math.max(3, ground.width / 70) });
   rows.forEach((row, i) => ground.inner.append(drawRow(row, i * ROW, x, spec, model, store)));
@@ -109,13 +134,19 @@ function draw(place, rows, spec, model, store) {
 }
 
 function drawRow(row, top, x, spec, model, store) {
-  const group = svg("g", { role: "img", "aria-label": `${row.arm.label}: ${row.parts.map(({ part, size }) => `${part.label} ${size.toFixed(2)}`).join(", ")}` });
+  const group = svg("g", {
+    role: "img",
+    "aria-label": `${row.arm.label}: ${row.parts.map(({ part, size }) => `${part.label} ${size.toFixed(2)}`).join(", ")}`,
+  });
   let from = 0;
   for (const { part, cell, size } of row.parts) {
     const rect = svg("rect", {
       class: row.faint && row.faint !== part.choose ? "bar faint" : "bar",
       style: `--c:var(${part.variable})`,
-      x: x(from), width: Math.max(0, x(from + size) - x(from)), y: top + 4, height: ROW - 10,
+      x: x(from),
+      width: Math.max(0, x(from + size) - x(from)),
+      y: top + 4,
+      height: ROW - 10,
       onclick: () => (part.choose ? store.toggle("outcome", part.choose) : store.toggleArm(row.arm.key)),
     });
     from += size;
@@ -123,14 +154,33 @@ function drawRow(row, top, x, spec, model, store) {
       withTooltip(rect, () => [
         `${row.arm.label}: ${part.label}`,
         part.minus ? `${size.toFixed(2)} %` : withInterval(cell, model.byName[part.metric]),
-        row.paper && `paper's ${model.byName[spec.whisker].label}: ${row.paper.text} ${model.byName[spec.whisker].unit}`,
+        row.paper &&
+          `paper's ${model.byName[spec.whisker].label}: ${row.paper.text} ${model.byName[spec.whisker].unit}`,
       ]),
     );
   }
   const middle = top + ROW / 2 - 1;
-  if (row.whisker.lo !== null) group.append(svg("line", { class: "whisker", x1: x(row.whisker.lo), x2: x(Math.min(row.whisker.hi, x.domain()[1])), y1: middle, y2: middle }));
-  if (row.paper) group.append(svg("path", { class: "diamond", d: `M${x(row.paper.value)},${middle - 6}l5,6l-5,6l-5,-6z` }));
-  group.append(svg("text", { class: "row-label", style: `--c:${row.arm.colour}`, x: -10, y: middle + 5, "text-anchor": "end" }, row.arm.label));
+  if (row.whisker.lo !== null)
+    group.append(
+      svg("line", {
+        class: "whisker",
+        x1: x(row.whisker.lo),
+        x2: x(Math.min(row.whisker.hi, x.domain()[1])),
+        y1: middle,
+        y2: middle,
+      }),
+    );
+  if (row.paper)
+    group.append(
+      svg("path", { class: "diamond", d: `M${x(row.paper.value)},${middle - 6}l5,6l-5,6l-5,-6z` }),
+    );
+  group.append(
+    svg(
+      "text",
+      { class: "row-label", style: `--c:${row.arm.colour}`, x: -10, y: middle + 5, "text-anchor": "end" },
+      row.arm.label,
+    ),
+  );
   return group;
 }
 
@@ -140,7 +190,8 @@ const numbers = (rows, spec, model) =>
       { label: "arm", text: (r) => r.arm.label, key: (r) => r.arm.label, left: true },
       ...spec.parts.map((part, i) => ({
         label: part.label,
-        text: (r) => (part.minus ? r.parts[i].size.toFixed(2) : withInterval(r.parts[i].cell, model.byName[part.metric])),
+        text: (r) =>
+          part.minus ? r.parts[i].size.toFixed(2) : withInterval(r.parts[i].cell, model.byName[part.metric]),
         key: (r) => r.parts[i].size,
       })),
     ],

@@ -40,10 +40,24 @@ export function claims(model, store) {
   const chips = study.counts
     .filter(([verdict]) => verdict !== "not measured")
     .map(([verdict, n]) =>
-      el("button", { type: "button", class: `chip verdict ${classOf(verdict)}`, "data-verdict": verdict, onclick: () => store.toggle("verdict", verdict) }, el("b", {}, n), ` ${verdict}`),
+      el(
+        "button",
+        {
+          type: "button",
+          class: `chip verdict ${classOf(verdict)}`,
+          "data-verdict": verdict,
+          onclick: () => store.toggle("verdict", verdict),
+        },
+        el("b", {}, n),
+        ` ${verdict}`,
+      ),
     );
   const metrics = [...new Set(judged.map((claim) => claim.metric))].sort();
-  const about = select("Metric", [["all", "all"], ...metrics.map((m) => [m, model.byName[m]?.label ?? m.replaceAll("_", " ")])], (value) => store.set({ about: value }));
+  const about = select(
+    "Metric",
+    [["all", "all"], ...metrics.map((m) => [m, model.byName[m]?.label ?? m.replaceAll("_", " ")])],
+    (value) => store.set({ about: value }),
+  );
   const sure = select("Certainty", CERTAINTY, (value) => store.set({ sure: value }));
   const unmeasured = study.counts.find(([verdict]) => verdict === "not measured")?.[1] ?? 0;
   const shown = el("p", { class: "key", "aria-live": "polite" });
@@ -71,13 +85,16 @@ export function claims(model, store) {
     node,
     title: "Claims",
     update(state) {
-      for (const chip of chips) chip.setAttribute("aria-pressed", String(chip.dataset.verdict === state.verdict));
+      for (const chip of chips)
+        chip.setAttribute("aria-pressed", String(chip.dataset.verdict === state.verdict));
       about.input.value = state.about;
       sure.input.value = state.sure;
       const names = state.arms.map((key) => model.arms.find((arm) => arm.key === key)?.name);
       const found = filterClaims(judged, state, names);
       shown.textContent = `${found.length} of ${judged.length} judged claims${names.length > 0 ? ", those that speak of the arms chosen" : ""}.`;
-      list.replaceChildren(sortedTable(columns(model, study), found, { caption: "Claims of the paper and their verdicts" }));
+      list.replaceChildren(
+        sortedTable(columns(model, study), found, { caption: "Claims of the paper and their verdicts" }),
+      );
     },
   };
 }
@@ -86,10 +103,46 @@ const classOf = (verdict) => `v-${verdict.split(" ")[0]}`;
 
 const columns = (model, study) => [
   { label: "claim", text: (c) => c.id, key: (c) => c.id, left: true },
-  { label: "says", left: true, key: (c) => c.claim, text: (c) => el("div", { class: "says" }, c.claim, el("small", {}, `“${c.words}” (${c.where})`), el("small", { class: "why" }, c.why, c.repeats && ` · says the same as ${c.repeats}`)) },
+  {
+    label: "says",
+    left: true,
+    key: (c) => c.claim,
+    text: (c) =>
+      el(
+        "div",
+        { class: "says" },
+        c.claim,
+        el("small", {}, `“${c.words}” (${c.where})`),
+        el("small", { class: "why" }, c.why, c.repeats && ` · says the same as ${c.repeats}`),
+      ),
+  },
   { label: "paper", text: (c) => (c.paper === null ? "" : number(c.paper, 2)), key: (c) => c.paper },
-  { label: "ours, 95 %", text: (c) => [number(c.ours, 2), el("i", {}, interval(c.lo, c.hi, 2))].map((part) => part), key: (c) => c.ours },
-  { label: "p", text: (c) => (decisive(c) === null ? "" : pValue(decisive(c)) + (c.p_against !== null && c.p_against < (c.p ?? 2) ? "!" : "")), key: decisive },
-  ...(study.networks > 1 ? [{ label: "alone", text: (c) => (c.networks ? `${c.networks[0]} of ${c.networks[1]}` : ""), key: (c) => c.networks?.[0] }] : []),
-  { label: "verdict", left: true, text: (c) => el("span", { class: `verdict ${classOf(c.verdict)}` }, c.told), key: (c) => c.told },
+  {
+    label: "ours, 95 %",
+    text: (c) => [number(c.ours, 2), el("i", {}, interval(c.lo, c.hi, 2))].map((part) => part),
+    key: (c) => c.ours,
+  },
+  {
+    label: "p",
+    text: (c) =>
+      decisive(c) === null
+        ? ""
+        : pValue(decisive(c)) + (c.p_against !== null && c.p_against < (c.p ?? 2) ? "!" : ""),
+    key: decisive,
+  },
+  ...(study.networks > 1
+    ? [
+        {
+          label: "alone",
+          text: (c) => (c.networks ? `${c.networks[0]} of ${c.networks[1]}` : ""),
+          key: (c) => c.networks?.[0],
+        },
+      ]
+    : []),
+  {
+    label: "verdict",
+    left: true,
+    text: (c) => el("span", { class: `verdict ${classOf(c.verdict)}` }, c.told),
+    key: (c) => c.told,
+  },
 ];

@@ -21,9 +21,21 @@ export function distributions(model, store) {
       "A click on a colour chooses the outcome.",
   );
   const buttons = model.data.histograms.scales.map((scale) =>
-    el("button", { type: "button", class: "tab", "data-scale": scale.column, onclick: () => store.set({ scale: scale.column }) }, scale.label),
+    el(
+      "button",
+      {
+        type: "button",
+        class: "tab",
+        "data-scale": scale.column,
+        onclick: () => store.set({ scale: scale.column }),
+      },
+      scale.label,
+    ),
   );
-  controls.append(el("div", { class: "tabs", role: "group", "aria-label": "Quantity" }, buttons), outcomeLegend(store));
+  controls.append(
+    el("div", { class: "tabs", role: "group", "aria-label": "Quantity" }, buttons),
+    outcomeLegend(store),
+  );
   return {
     node,
     update(state) {
@@ -59,7 +71,11 @@ export const outcomeLegend = (store) =>
 function draw(place, rows, store) {
   const narrow = place.clientWidth < 560;
   const margin = { ...MARGIN, left: narrow ? 12 : MARGIN.left };
-  const ground = canvas(place, { height: rows.length * ROW + margin.top + margin.bottom, label: "Distribution of missions, one row for each arm", margin });
+  const ground = canvas(place, {
+    height: rows.length * ROW + margin.top + margin.bottom,
+    label: "Distribution of missions, one row for each arm",
+    margin,
+  });
   if (rows.length === 0) return ground.root;
   const { scale } = rows[0];
   const x = scaleLinear([scale.from, scale.from + scale.step * scale.bins], [0, ground.width]);
@@ -83,18 +99,40 @@ function drawRow(row, top, x, width, narrow, store) {
       const height = y(n);
       up -= height;
       const from = scale.from + bin * scale.step;
-      const rect = svg("rect", { class: "bar", style: `--c:var(${outcome.variable})`, x: x(from) + 0.5, width: Math.max(1, x(from + scale.step) - x(from) - 1), y: up, height, onclick: () => store.toggle("outcome", outcome.id) });
+      const rect = svg("rect", {
+        class: "bar",
+        style: `--c:var(${outcome.variable})`,
+        x: x(from) + 0.5,
+        width: Math.max(1, x(from + scale.step) - x(from) - 1),
+        y: up,
+        height,
+        onclick: () => store.toggle("outcome", outcome.id),
+      });
       group.append(
         withTooltip(rect, () => [
           `${row.arm.label}, ${number(from, 1)}–${number(from + scale.step, 1)} ${scale.unit}`,
-          ...OUTCOMES.map((other, i) => counts[i][bin] > 0 && `${other.label}: ${plural(counts[i][bin], "mission")}`),
+          ...OUTCOMES.map(
+            (other, i) => counts[i][bin] > 0 && `${other.label}: ${plural(counts[i][bin], "mission")}`,
+          ),
           `${count(total)} of ${count(totals.reduce((a, b) => a + b, 0))}`,
         ]),
       );
     });
   });
   if (row.cell?.value !== null && row.cell) group.append(meanMark(row, x, base));
-  group.append(svg("text", { class: "row-label", style: `--c:${row.arm.colour}`, x: narrow ? 0 : -10, y: narrow ? top + 12 : base - 14, "text-anchor": narrow ? "start" : "end" }, row.arm.label));
+  group.append(
+    svg(
+      "text",
+      {
+        class: "row-label",
+        style: `--c:${row.arm.colour}`,
+        x: narrow ? 0 : -10,
+        y: narrow ? top + 12 : base - 14,
+        "text-anchor": narrow ? "start" : "end",
+      },
+      row.arm.label,
+    ),
+  );
   return group;
 }
 
@@ -102,11 +140,16 @@ function meanMark({ arm, cell, metric, paper }, x, base) {
   const mark = svg(
     "g",
     { class: "mean-mark" },
-    cell.lo !== null && svg("line", { class: "whisker", x1: x(cell.lo), x2: x(cell.hi), y1: base + 3, y2: base + 3 }),
+    cell.lo !== null &&
+      svg("line", { class: "whisker", x1: x(cell.lo), x2: x(cell.hi), y1: base + 3, y2: base + 3 }),
     svg("line", { class: "mean", x1: x(cell.value), x2: x(cell.value), y1: base - ROW + 18, y2: base + 6 }),
     paper && svg("path", { class: "diamond", d: `M${x(paper.value)},${base - 3}l5,6l-5,6l-5,-6z` }),
   );
-  return withTooltip(mark, () => [`${arm.label}: ${metric.label}`, `ours ${withInterval(cell, metric)}`, paper && `paper ${paper.text} ${metric.unit}`]);
+  return withTooltip(mark, () => [
+    `${arm.label}: ${metric.label}`,
+    `ours ${withInterval(cell, metric)}`,
+    paper && `paper ${paper.text} ${metric.unit}`,
+  ]);
 }
 
 const spread = ({ counts, cell, metric }) =>
@@ -118,8 +161,16 @@ const numbers = (rows) =>
   tableBehind(
     [
       { label: "arm", text: (r) => r.arm.label, key: (r) => r.arm.label, left: true },
-      { label: rows[0]?.metric.heading ?? "mean", text: (r) => withInterval(r.cell, r.metric), key: (r) => r.cell?.value },
-      ...OUTCOMES.map((outcome, o) => ({ label: outcome.label, text: (r) => count(total(r.counts[o])), key: (r) => total(r.counts[o]) })),
+      {
+        label: rows[0]?.metric.heading ?? "mean",
+        text: (r) => withInterval(r.cell, r.metric),
+        key: (r) => r.cell?.value,
+      },
+      ...OUTCOMES.map((outcome, o) => ({
+        label: outcome.label,
+        text: (r) => count(total(r.counts[o])),
+        key: (r) => total(r.counts[o]),
+      })),
     ],
     rows,
     "Missions in the bins above, by outcome, with the mean",

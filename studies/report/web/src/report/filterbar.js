@@ -6,17 +6,31 @@ import { START } from "../lib/state.js";
 const THEMES = { auto: "Theme: system", light: "Theme: light", dark: "Theme: dark" };
 
 export function filterBar(model, store) {
-  const arms = model.flown.map((arm) =>
-    el(
-      "button",
-      { type: "button", class: "arm chip", style: `--c:${arm.colour}`, "data-arm": arm.key, onclick: () => store.toggleArm(arm.key) },
-      el("span", { class: "swatch", "aria-hidden": "true" }),
-      arm.label,
-    ),
-  );
+  const arms = [...model.flown]
+    .sort((a, b) => a.warmup - b.warmup)
+    .map((arm) =>
+      el(
+        "button",
+        {
+          type: "button",
+          class: "arm chip",
+          style: `--c:${arm.colour}`,
+          "data-arm": arm.key,
+          onclick: () => store.toggleArm(arm.key),
+        },
+        el("span", { class: "swatch", "aria-hidden": "true" }),
+        arm.label,
+      ),
+    );
   const site = select("Site", siteOptions(model), (value) => store.set({ site: value }));
-  const outcome = select("Outcome", [["all", "all"], ...OUTCOMES.map((o) => [o.id, o.label])], (value) => store.set({ outcome: value }));
-  const reset = button("Show all", () => store.set({ arms: START.arms, site: START.site, outcome: START.outcome }), { class: "reset" });
+  const outcome = select("Outcome", [["all", "all"], ...OUTCOMES.map((o) => [o.id, o.label])], (value) =>
+    store.set({ outcome: value }),
+  );
+  const reset = button(
+    "Show all",
+    () => store.set({ arms: START.arms, site: START.site, outcome: START.outcome }),
+    { class: "reset" },
+  );
   const link = button("Copy link", () => copyText(location.href, link));
   const theme = button("", () => {
     const names = Object.keys(THEMES);
@@ -24,14 +38,16 @@ export function filterBar(model, store) {
   });
   const node = el(
     "div",
-    { id: "filters", role: "group", "aria-label": "What the pictures show" },
+    { id: "filters", role: "region", "aria-label": "What the pictures show" },
     el("div", { class: "chips" }, arms),
-    el("div", { class: "choices" }, site.node, outcome.node, reset, link, theme),
+    el("div", { class: "choices" }, site.node, outcome.node, reset),
   );
   return {
     node,
+    tools: el("div", { class: "chips tools" }, link, theme),
     update(state) {
-      for (const chip of arms) chip.setAttribute("aria-pressed", String(state.arms.includes(chip.dataset.arm)));
+      for (const chip of arms)
+        chip.setAttribute("aria-pressed", String(state.arms.includes(chip.dataset.arm)));
       node.classList.toggle("some-arms", state.arms.length > 0);
       site.input.value = state.site;
       outcome.input.value = state.outcome;

@@ -16,7 +16,12 @@ export function headline(model, store) {
     el("h1", {}, data.question || data.name),
     el("p", { class: "answer" }, data.answer.length ? data.answer.join(" ") : "No missions yet."),
   );
-  const table = el("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Main results beside the paper's" });
+  const table = el("div", {
+    class: "wide",
+    tabindex: 0,
+    role: "region",
+    "aria-label": "Main results beside the paper's",
+  });
   const note = el("p", { class: "key" });
   const node = el(
     "section",
@@ -44,9 +49,12 @@ function told(data) {
 const filtered = (state) => state.site !== "all" || state.outcome !== "all";
 
 const key = (state, model) => [
-  el("b", {}, "Bold"), " ours, beneath it the 95 % interval, also drawn on a scale common to the column; ",
-  el("span", { class: "paper-mark", "aria-hidden": "true" }, "◇"), " the paper's value, ",
-  el("span", { class: "within" }, "filled ◆"), " where our interval holds it, give or take its rounding. ",
+  el("b", {}, "Bold"),
+  " ours, beneath it the 95 % interval, also drawn on a scale common to the column; ",
+  el("span", { class: "paper-mark", "aria-hidden": "true" }, "◇"),
+  " the paper's value, ",
+  el("span", { class: "within" }, "filled ◆"),
+  " where our interval holds it, give or take its rounding. ",
   filtered(state)
     ? "The paper's values are of all missions and are not shown beside a selection."
     : model.data.claims.networks > 1
@@ -78,7 +86,13 @@ function headTable(model, store, state) {
         el(
           "tr",
           { "data-arm": arm.key },
-          el("th", { scope: "row", class: "left" }, armButton(arm, store, state), " ", el("small", {}, missionsOf(model, arm, state))),
+          el(
+            "th",
+            { scope: "row", class: "left" },
+            armButton(arm, store, state),
+            " ",
+            el("small", {}, missionsOf(model, arm, state)),
+          ),
           metrics.map((metric, i) => cellOf(model, arm, metric, scales[i], state)),
         ),
       ),
@@ -137,12 +151,20 @@ function cellOf(model, arm, metric, scale, state) {
   const node = el(
     "td",
     { "data-metric": metric.name, "data-value": cell.value },
-    el("b", {}, number(cell.value, metric.decimals)),
-    el("i", {}, interval(cell.lo, cell.hi, metric.decimals) || " "),
+    el(
+      "div",
+      { class: "pair" },
+      paper
+        ? el(
+            "span",
+            { class: paper.within ? "paper within" : "paper" },
+            `${paper.within ? "◆" : "◇"} ${paper.text}`,
+          )
+        : el("span"),
+      el("b", {}, number(cell.value, metric.decimals)),
+    ),
+    el("i", {}, interval(cell.lo, cell.hi, metric.decimals) || "\u00a0"),
     strip(cell, paper, scale, arm),
-    paper
-      ? el("span", { class: paper.within ? "paper within" : "paper" }, `${paper.within ? "◆" : "◇"} ${paper.text}`)
-      : el("span", { class: "paper" }, " "),
   );
   return withTooltip(node, () => [
     `${arm.label}: ${metric.label}`,
@@ -156,9 +178,16 @@ function cellOf(model, arm, metric, scale, state) {
 const strip = (cell, paper, scale, arm) =>
   svg(
     "svg",
-    { class: "strip", viewBox: "0 0 100 10", preserveAspectRatio: "none", "aria-hidden": "true", style: `--c:${arm.colour}` },
+    {
+      class: "strip",
+      viewBox: "0 0 100 10",
+      preserveAspectRatio: "none",
+      "aria-hidden": "true",
+      style: `--c:${arm.colour}`,
+    },
     svg("line", { x1: 0, x2: 100, y1: 5, y2: 5, class: "ground" }),
     cell.lo !== null && svg("line", { x1: scale(cell.lo), x2: scale(cell.hi), y1: 5, y2: 5, class: "range" }),
     svg("line", { x1: scale(cell.value), x2: scale(cell.value), y1: 0.5, y2: 9.5, class: "mean" }),
-    paper && svg("line", { x1: scale(paper.value), x2: scale(paper.value), y1: 0.5, y2: 9.5, class: "theirs" }),
+    paper &&
+      svg("line", { x1: scale(paper.value), x2: scale(paper.value), y1: 0.5, y2: 9.5, class: "theirs" }),
   );

@@ -33,7 +33,19 @@ const store = makeStore(parseFragment(location.hash, allowed), (state) =>
 
 const bar = filterBar(model, store);
 const first = headline(model, store);
-const pictures = model.shown.length === 0 ? [] : [plane(model, store), distributions(model, store), energyParts(model, store), outcomes(model, store), decisions(model, store), missionCloud(model, store), sites(model, store), convergence(model, store)];
+const pictures =
+  model.shown.length === 0
+    ? []
+    : [
+        plane(model, store),
+        distributions(model, store),
+        energyParts(model, store),
+        outcomes(model, store),
+        decisions(model, store),
+        missionCloud(model, store),
+        sites(model, store),
+        convergence(model, store),
+      ];
 const lists = [claims(model, store), model.shown.length > 0 && failures(model, store)].filter(Boolean);
 const views = [bar, first, ...pictures, ...lists];
 
@@ -54,19 +66,31 @@ const nav = el(
 // The fragment holds the state, so that sections are reached without it.
 function go(id) {
   const place = document.getElementById(id);
-  place.scrollIntoView({ behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "auto" : "smooth" });
+  place.scrollIntoView({
+    behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "auto" : "smooth",
+  });
   place.setAttribute("tabindex", "-1");
   place.focus({ preventScroll: true });
 }
 
 document.getElementById("app").append(
-  el("header", {}, el("div", { class: "brand" }, "ED³R", el("span", {}, " report")), nav),
+  el("header", {}, el("div", { class: "brand" }, "ED³R", el("span", {}, " report")), nav, bar.tools),
   bar.node,
   el(
     "main",
     {},
     first.node,
-    pictures.length > 0 && el("section", { id: "pictures", "aria-label": "Pictures" }, el("div", { class: "pictures" }, pictures.map((view) => view.node))),
+    pictures.length > 0 &&
+      el(
+        "section",
+        { id: "pictures" },
+        el("h2", { class: "hidden" }, "Pictures"),
+        el(
+          "div",
+          { class: "pictures" },
+          pictures.map((view) => view.node),
+        ),
+      ),
     lists.map((view) => view.node),
     tables(model),
     figuresForPapers(model),

@@ -45,8 +45,18 @@ function pointsOf(model, state) {
     columns.number.forEach((n, i) => {
       const site = columns.site[i],
         outcome = columns.outcome[i];
-      if (!model.atSite(state, site) || (state.outcome !== "all" && state.outcome !== String(outcome))) return;
-      points.push({ arm, number: n, site, outcome, energy: columns.energy_kj[i], duration: columns.duration_min[i], scs: columns.scs_pct[i], siteName: model.sites.get(site)?.name });
+      if (!model.atSite(state, site) || (state.outcome !== "all" && state.outcome !== String(outcome)))
+        return;
+      points.push({
+        arm,
+        number: n,
+        site,
+        outcome,
+        energy: columns.energy_kj[i],
+        duration: columns.duration_min[i],
+        scs: columns.scs_pct[i],
+        siteName: model.sites.get(site)?.name,
+      });
     });
   }
   return points;
@@ -67,7 +77,11 @@ function draw(place, points) {
   axes(ground, x, y, { x: "energy of a mission, kJ", y: "mean confidence of reliable looks, %" });
   const style = getComputedStyle(document.documentElement);
   const colours = OUTCOMES.map((o) => style.getPropertyValue(o.variable).trim());
-  const cloud = el("canvas", { class: "cloud", role: "img", "aria-label": `${points.length} missions as points` });
+  const cloud = el("canvas", {
+    class: "cloud",
+    role: "img",
+    "aria-label": `${points.length} missions as points`,
+  });
   const ratio = window.devicePixelRatio || 1;
   const full = ground.width + MARGIN.left + MARGIN.right;
   cloud.width = full * ratio;

@@ -59,9 +59,25 @@ export function makeModel(data) {
     return total;
   }
 
-  const command = (arm, number) => `ed3r replay ${quoted(data.run.dir)} ${quoted(`${arm.stored_name}/${number}`)}`;
+  const command = (arm, number) =>
+    `ed3r replay ${quoted(data.run.dir)} ${quoted(`${arm.stored_name}/${number}`)}`;
 
-  return { data, metrics, byName, arms, flown, shown, sites, cell, missions, chosen, atSite, histogram, pooled, command };
+  return {
+    data,
+    metrics,
+    byName,
+    arms,
+    flown,
+    shown,
+    sites,
+    cell,
+    missions,
+    chosen,
+    atSite,
+    histogram,
+    pooled,
+    command,
+  };
 }
 
 /** A word for a POSIX shell. */
@@ -81,7 +97,16 @@ function sitesOf(data) {
       .sort((a, b) => a - b)
       .map((number) => {
         const place = data.world?.sites[number];
-        return [number, { number, name: place?.name ?? `site ${number}`, x_m: place?.x_m, y_m: place?.y_m, known: known.has(number) }];
+        return [
+          number,
+          {
+            number,
+            name: place?.name ?? `site ${number}`,
+            x_m: place?.x_m,
+            y_m: place?.y_m,
+            known: known.has(number),
+          },
+        ];
       }),
   );
 }

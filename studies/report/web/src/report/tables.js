@@ -9,10 +9,28 @@ export function tables(model) {
     "section",
     { id: "tables" },
     el("h2", {}, "Tables"),
-    el("p", { class: "key" }, "Ours in bold, the 95 % interval beneath, then the paper's value (◆: our interval holds it, give or take its rounding). These are of all missions, whatever is chosen above."),
+    el(
+      "p",
+      { class: "key" },
+      "Ours in bold, the 95 % interval beneath, then the paper's value (◆: our interval holds it, give or take its rounding). These are of all missions, whatever is chosen above.",
+    ),
     data.tables.map((table) => tableNode(model, table)),
     variants(model),
-    el("p", { class: "files" }, "Every metric of every arm: ", ["report.txt", "report.json", "metrics.csv", "generalisation.csv", "convergence.csv", "look_forward.csv"].map((file) => [el("a", { href: file }, file), " "]), "made by ", el("code", {}, data.run.report_command)),
+    el(
+      "p",
+      { class: "files" },
+      "Every metric of every arm: ",
+      [
+        "report.txt",
+        "report.json",
+        "metrics.csv",
+        "generalisation.csv",
+        "convergence.csv",
+        "look_forward.csv",
+      ].map((file) => [el("a", { href: file }, file), " "]),
+      "made by ",
+      el("code", {}, data.run.report_command),
+    ),
   );
 }
 
@@ -21,12 +39,26 @@ function tableNode(model, table) {
   const cellNode = ([value, lo, hi, paper], metric) => [
     el("b", {}, number(value, metric.decimals)),
     el("i", {}, interval(lo, hi, metric.decimals)),
-    paper && el("span", { class: paper.within ? "paper within" : "paper" }, `${paper.within ? "◆" : "◇"} ${paper.text}`),
+    paper &&
+      el(
+        "span",
+        { class: paper.within ? "paper within" : "paper" },
+        `${paper.within ? "◆" : "◇"} ${paper.text}`,
+      ),
   ];
   const columns = table.arms_down
     ? [
-        { label: "arm", left: true, key: (i) => table.labels[i], text: (i) => [table.labels[i], " ", el("small", {}, count(table.missions[i]))] },
-        ...metrics.map((metric, m) => ({ label: metric.heading, key: (i) => table.cells[i][m][0], text: (i) => cellNode(table.cells[i][m], metric) })),
+        {
+          label: "arm",
+          left: true,
+          key: (i) => table.labels[i],
+          text: (i) => [table.labels[i], " ", el("small", {}, count(table.missions[i]))],
+        },
+        ...metrics.map((metric, m) => ({
+          label: metric.heading,
+          key: (i) => table.cells[i][m][0],
+          text: (i) => cellNode(table.cells[i][m], metric),
+        })),
       ]
     : [
         { label: "", left: true, key: (m) => metrics[m].heading, text: (m) => metrics[m].heading },
@@ -38,7 +70,14 @@ function tableNode(model, table) {
     { open: table.id === "arms" ? undefined : true, id: `table-${table.id}` },
     el("summary", {}, el("h3", {}, table.title)),
     sortedTable(columns, rows, { caption: table.title }),
-    el("p", { class: "files" }, ["md", "tex", "csv", "json"].map((ending) => [el("a", { href: `tables/${table.id}.${ending}` }, `${table.id}.${ending}`), " "])),
+    el(
+      "p",
+      { class: "files" },
+      ["md", "tex", "csv", "json"].map((ending) => [
+        el("a", { href: `tables/${table.id}.${ending}` }, `${table.id}.${ending}`),
+        " ",
+      ]),
+    ),
   );
 }
 
@@ -48,18 +87,35 @@ function variants(model) {
   const metric = (row) => model.byName[row.metric];
   return [
     el("h3", {}, `What each variant changes, compared with “${study.base}”`),
-    el("p", { class: "key" }, "Each variant minus the first, paired by scenario, with 95 % intervals; bold where the interval does not hold 0. Everything else on this page is of the first variant."),
+    el(
+      "p",
+      { class: "key" },
+      "Each variant minus the first, paired by scenario, with 95 % intervals; bold where the interval does not hold 0. Everything else on this page is of the first variant.",
+    ),
     sortedTable(
       [
         { label: "variant", left: true, key: (r) => r.variant, text: (r) => r.variant },
         { label: "arm", left: true, key: (r) => r.label, text: (r) => r.label },
         { label: "metric", left: true, key: (r) => r.metric, text: (r) => metric(r)?.heading ?? r.metric },
-        { label: "difference", key: (r) => r.difference, text: (r) => [el(r.certain ? "b" : "span", {}, `${r.difference > 0 ? "+" : ""}${number(r.difference, 2)}`), el("i", {}, interval(r.lo, r.hi, 2))] },
+        {
+          label: "difference",
+          key: (r) => r.difference,
+          text: (r) => [
+            el(r.certain ? "b" : "span", {}, `${r.difference > 0 ? "+" : ""}${number(r.difference, 2)}`),
+            el("i", {}, interval(r.lo, r.hi, 2)),
+          ],
+        },
       ],
       study.differences,
       { caption: "What each variant changes" },
     ),
-    el("p", { class: "files" }, el("a", { href: "variants.csv" }, "variants.csv"), " ", el("a", { href: "variant_verdicts.csv" }, "variant_verdicts.csv")),
+    el(
+      "p",
+      { class: "files" },
+      el("a", { href: "variants.csv" }, "variants.csv"),
+      " ",
+      el("a", { href: "variant_verdicts.csv" }, "variant_verdicts.csv"),
+    ),
   ];
 }
 
@@ -71,11 +127,42 @@ export function figuresForPapers(model) {
     { id: "figures" },
     el("h2", {}, "Figures for papers"),
     run.figures_note && el("p", { class: "note" }, run.figures_note),
-    el("p", { class: "key" }, "Still pictures beside this page, with their captions in ", el("a", { href: "figures/README.md" }, "figures/README.md"), "; their data: ", el("a", { href: "figures/data.json" }, "figures/data.json"), "; redrawn with ", el("code", {}, "scripts/plot.py FOLDER"), ", FOLDER holding data.json."),
+    el(
+      "p",
+      { class: "key" },
+      "Still pictures beside this page, with their captions in ",
+      el("a", { href: "figures/README.md" }, "figures/README.md"),
+      "; their data: ",
+      el("a", { href: "figures/data.json" }, "figures/data.json"),
+      "; redrawn with ",
+      el("code", {}, "scripts/plot.py FOLDER"),
+      ", FOLDER holding data.json.",
+    ),
     el(
       "ol",
       { class: "figures" },
-      figures.map((figure) => el("li", {}, el("details", {}, el("summary", {}, figure.title, !run.figures_note && [" ", el("a", { href: `figures/${figure.id}.svg` }, "svg"), " ", el("a", { href: `figures/${figure.id}.png` }, "png")]), el("p", {}, figure.caption)))),
+      figures.map((figure) =>
+        el(
+          "li",
+          {},
+          el(
+            "details",
+            {},
+            el(
+              "summary",
+              {},
+              figure.title,
+              !run.figures_note && [
+                " ",
+                el("a", { href: `figures/${figure.id}.svg` }, "svg"),
+                " ",
+                el("a", { href: `figures/${figure.id}.png` }, "png"),
+              ],
+            ),
+            el("p", {}, figure.caption),
+          ),
+        ),
+      ),
     ),
   );
 }
