@@ -7,6 +7,7 @@
 #include "engine/app/commands.h"
 #include "engine/app/decision_text.h"
 #include "engine/app/mission_pictures.h"
+#include "engine/app/mission_viewer.h"
 #include "engine/app/stored_run.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
@@ -14,6 +15,7 @@
 #include "engine/store/digest.h"
 #include "engine/world/map_picture.h"
 #include "studies/metrics/number_text.h"
+#include "studies/report/web_page.h"
 
 namespace ed3r {
 namespace {
@@ -22,6 +24,8 @@ struct Options {
   std::string dir, mission, out;
   std::string cache = "results/cache";
   std::vector<int> frames;  // timesteps
+  bool html = false;
+  std::string beside;
 };
 
 class TraceFile : public TraceSink {
@@ -71,6 +75,36 @@ void CheckFrames(const std::vector<int>& frames, std::int64_t timesteps) {
           fmt::format("--frames {}: is not allowed; the mission has timesteps 1 .. {}", k, timesteps));
 }
 
+// The viewer of one mission, or of two on one clock, as one file.
+void WriteViewer(StoredRun& run, const Options& options, const Scene& scene, const WebBundle& bundle,
+                 const std::filesystem::path& path) {
+  nlohmann::ordered_json data = {{"format", 1},
+                                 {"run", run.Plan().name},
+                                 {"world", ViewerWorld(scene)},
+                                 {"missions", {ViewerMission(run, options.mission)}}};
+  if (!options.beside.empty()) data["missions"].push_back(ViewerMission(run, options.beside));
+  std::string title = options.mission;
+  if (!options.beside.empty()) title += " beside " + options.beside;
+  WriteFile(path, SelfContainedPage(title + " – ED³R mission", bundle, data,
+                                    "<p>The viewer is a program: it needs scripts. 'ed3r replay' without "
+                                    "--html writes the mission's map and tables.</p>"));
+}
+
+// Two missions are shown in one world.
+void CheckBeside(StoredRun& run, const Options& options, const Scene& scene) {
+  if (options.beside.empty()) return;
+  if (!options.html) throw UserError("--beside: is of --html, the viewer of two missions");
+  if (&run.Task(run.Find(options.beside)).scene != &scene)
+    throw UserError(
+        fmt::format("--beside {}: flies in another world than {}", options.beside, options.mission));
+}
+
+WebBundle ViewerBundle() {
+  const FoundBundle found = FindWebBundle("viewer");
+  if (!found.bundle) throw UserError("--html: " + found.why_not);
+  return *found.bundle;
+}
+
 int Replay(const Options& options) {
   StoredRun run(options.dir, options.cache);
   const RunId id = run.Find(options.mission);
@@ -82,6 +116,9 @@ int Replay(const Options& options) {
   const std::filesystem::path out = options.out.empty() ? std::filesystem::path(options.dir) / "replay" / name
                                                         : std::filesystem::path(options.out);
   MissionTask task = run.Task(id);
+  CheckBeside(run, options, task.scene);
+  std::optional<WebBundle> viewer;
+  if (options.html) viewer = ViewerBundle();
   std::optional<MissionPictures> pictures;
   if (!options.frames.empty()) pictures.emplace(task);
   MakeFolder(out);
@@ -99,11 +136,12 @@ int Replay(const Options& options) {
   for (const int k : options.frames)
     if (k <= flown.timesteps)  // a flight that differs may be shorter
       fmt::print("{}", pictures->Write(flown, k, (out / fmt::format("step{:03}", k)).string()));
+  if (viewer) WriteViewer(run, options, task.scene, *viewer, out / "mission.html");
   fmt::print("{}: {} in {}, {:.1f} s, {:.2f} kJ; {}\n", options.mission,
              NameOf(static_cast<Outcome>(flown.outcome)), Counted(flown.timesteps, "timestep"),
              flown.duration_s, flown.total_j / 1000.0,
              identical ? "identical to the stored record" : "DIFFERS from the stored record");
-  fmt::print("{}: trace.csv, timesteps.csv, map.png\n", out.string());
+  fmt::print("{}: trace.csv, timesteps.csv, map.png{}\n", out.string(), viewer ? ", mission.html" : "");
   return identical ? kDone : kFailedInside;
 }
 
@@ -125,6 +163,10 @@ Command AddReplay(CLI::App& program) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("K[,K...]");
+  parser->add_flag("--html", options->html,
+                   "Also mission.html: the mission to watch in a browser, in one file that needs no network");
+  parser->add_option("--beside", options->beside,
+                     "Another mission, shown beside it on the same clock (with --html)");
   parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache")
       ->check(NotEmpty());
   return {parser, [options] { return Replay(*options); }};

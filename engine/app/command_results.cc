@@ -8,7 +8,9 @@
 
 #include "engine/app/commands.h"
 #include "engine/app/failure_text.h"
+#include "engine/app/report_missions.h"
 #include "engine/app/words.h"
+#include "engine/core/file.h"
 #include "engine/store/digest.h"
 #include "engine/store/merge.h"
 #include "engine/store/reader.h"
@@ -102,7 +104,8 @@ namespace {
 
 struct ReportOptions {
   std::string dir, out;
-  bool json = false, no_figures = false, force = false;
+  std::string cache = "results/cache";
+  bool json = false, no_figures = false, no_missions = false, force = false;
 };
 
 int MakeReportOf(const ReportOptions& options) {
@@ -116,14 +119,22 @@ int MakeReportOf(const ReportOptions& options) {
                        .command = ""};
   folder.command = "ed3r report " + options.dir + (options.out.empty() ? "" : " --out " + options.out);
   if (folder.out.empty()) folder.out = options.dir + "/report";
+  WatchedMissions watched;
+  if (!options.no_missions) watched = WatchMissions(report, results, options.dir, options.cache);
+  for (const WatchedMission& mission : watched.list)
+    folder.viewers.push_back({{"mission", mission.mission}, {"what", mission.what}, {"file", mission.file}});
   const FolderResult written = WriteReportFolder(report, results, folder);
+  if (!watched.list.empty()) MakeFolder(std::filesystem::path(folder.out) / "missions");
+  for (const WatchedMission& mission : watched.list)
+    WriteFile(std::filesystem::path(folder.out) / mission.file, mission.page);
   if (options.json)
     fmt::print("{}\n", ReportJson(report).dump(2));
   else
     fmt::print("{}\n{}: index.html, report.txt, report.json, metrics.csv, {} tables, {} figures\n",
                ReportText(report), folder.out, report.tables.size(), written.figures);
   std::fflush(stdout);  // before what goes to the other stream
-  if (!written.note.empty()) fmt::print(stderr, "note: {}\n", written.note);
+  for (const std::string& note : {written.note, written.page_note, watched.note})
+    if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
   if (written.plot_error.empty()) return kDone;
   fmt::print(stderr, "figures: drawing failed: {}\n", written.plot_error);
   return kFailedInside;
@@ -140,6 +151,10 @@ Command AddReport(CLI::App& program) {
   parser->add_flag("--force", options->force, "Write into a folder that is neither empty nor a report, too");
   parser->add_flag("--no-figures", options->no_figures,
                    "Draw nothing (no Python); the figures' data are still written");
+  parser->add_flag("--no-missions", options->no_missions,
+                   "Fly no missions again to be watched; a few are otherwise, into DIR/report/missions");
+  parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache")
+      ->check(NotEmpty());
   parser->add_flag("--json", options->json, "Print JSON");
   parser->footer(
       "Figures are drawn by scripts/plot.py, found in the source tree that this program was built from or in "

@@ -68,6 +68,7 @@ int Run(const Options& options) {
   sweep.half_width = HalfWidth;
   sweep.notes = DescribeMachine();
   sweep.notes.merge(NotesOf(options.sweep));
+  sweep.notes.emplace("sweep question", plan.question);
   const SweepSummary summary = RunSweep(plan, inputs, sweep);
 
   if (!options.quiet) {

@@ -7,7 +7,7 @@
 //     key             name, "STAGE/NAME" where another stage has one of that name
 //     stage, name, label
 //     warmup          true for missions that networks learnt from
-//     strategy, eta_min_pct    as the plan sets them; null where it is not known
+//     strategy, eta_min_pct, world    as the plan sets them; null where it is not known
 //     missions, failed, missing, networks
 //     metrics         as in report.json: METRIC: {mean, lo, hi, n, paper}, 95 % intervals
 //     per_mission     columns of equal length, in mission order: see `units`; null is "none"

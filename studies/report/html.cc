@@ -145,13 +145,11 @@ std::string HtmlText(std::string_view text) {
   return out;
 }
 
-std::string ReportPage(const PageInputs& inputs) {
+std::string ReportContent(const PageInputs& inputs) {
   const Report& report = inputs.report;
   std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>{0} – ED³R "
-      "report</title>\n<style>{1}</style></head>\n"
-      "<body>\n<header><h1>{0}</h1><nav><a href=\"#run\">What was run</a> <a href=\"#headline\">Results</a> "
+      "<style>{1}</style>\n<header><h1>{0}</h1><nav><a href=\"#run\">What was run</a> <a "
+      "href=\"#headline\">Results</a> "
       "{2}<a "
       "href=\"#tables\">Tables</a> <a href=\"#figures\">Figures</a></nav></header>\n",
       HtmlText(report.name), kPageStyle, report.claims.HasArms() ? "<a href=\"#verdicts\">Claims</a> " : "");
@@ -169,7 +167,15 @@ std::string ReportPage(const PageInputs& inputs) {
       "href=\"report.json\">report.json</a> <a href=\"metrics.csv\">metrics.csv</a> <a "
       "href=\"generalisation.csv\">generalisation.csv</a>, made by {}</p></section>\n",
       Code(inputs.report_command));
-  return html + FiguresHtml(inputs) + "</body></html>\n";
+  return html + FiguresHtml(inputs);
+}
+
+std::string ReportPage(const PageInputs& inputs) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<title>{} – ED³R "
+      "report</title></head>\n<body>\n{}</body></html>\n",
+      HtmlText(inputs.report.name), ReportContent(inputs));
 }
 
 }  // namespace ed3r

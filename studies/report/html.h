@@ -1,4 +1,5 @@
-// The report as one page: index.html in the report's folder; inline style, pictures by relative path, no scripts.
+// The report as a plain page: inline style, pictures by relative path, no scripts. It is index.html where the interactive
+// page (web_page.h) cannot be made, and what that shows in browsers without scripts.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -19,5 +20,8 @@ struct PageInputs {
 };
 
 std::string ReportPage(const PageInputs& inputs);
+
+// The same without the document around it: its style, then its content.
+std::string ReportContent(const PageInputs& inputs);
 
 }  // namespace ed3r

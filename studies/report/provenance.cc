@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <sstream>
 
+#include "engine/core/file.h"
+#include "engine/core/utf8.h"
 #include "engine/store/digest.h"
 #include "engine/store/reader.h"
 
@@ -35,6 +37,17 @@ std::string CommandOf(const std::map<std::string, std::string>& notes, const std
   return command + " --out " + dir;
 }
 
+// The first line's comment is a sweep file's question. Runs of before keep no note of it.
+std::string QuestionOf(const std::map<std::string, std::string>& notes) {
+  if (notes.contains("sweep question")) return Note(notes, "sweep question");
+  std::string text, ignored;
+  if (!TryReadFile(Note(notes, "sweep file"), kMaxTextBytes, text, ignored) || !text.starts_with("#"))
+    return "";
+  const std::string line = text.substr(1, text.find('\n') - 1);
+  const std::size_t first = line.find_first_not_of(" \t");
+  return first == std::string::npos || !IsUtf8(line) ? "" : line.substr(first);
+}
+
 }  // namespace
 
 Provenance ReadProvenance(const std::string& dir) {
@@ -55,6 +68,7 @@ Provenance ReadProvenance(const std::string& dir) {
     const std::map<std::string, std::string>& notes = provenance.sessions.back().notes;
     provenance.sweep_file = SweepFileOf(notes);
     provenance.command = CommandOf(notes, dir);
+    provenance.question = QuestionOf(notes);
     provenance.commit = Note(notes, "commit");
   }
   for (const ArmStatus& arm : reader.Status()) {

@@ -11,6 +11,7 @@ namespace ed3r {
 struct Provenance {
   std::string dir, sweep;
   std::string sweep_file, command;  // of the last of `sessions`; "" where it left no notes
+  std::string question;  // of the study, from its notes or its sweep file where that is still there; or ""
   std::string seed;
   std::string code_version;  // identity of the code that decided results, by subsystem
   bool mixed_code = false;   // several versions of one subsystem flew

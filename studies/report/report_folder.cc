@@ -6,10 +6,13 @@
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/store/reader.h"
 #include "studies/figures/draw.h"
 #include "studies/figures/figure_data.h"
 #include "studies/report/html.h"
+#include "studies/report/page_data.h"
 #include "studies/report/provenance.h"
+#include "studies/report/web_page.h"
 
 namespace ed3r {
 namespace {
@@ -99,6 +102,35 @@ void RemoveOldPictures(const fs::path& folder) {
   if (data.is_object() && data.contains("figures")) RemovePictures(folder, data["figures"]);
 }
 
+// Missions that threw inside the program, with their own words.
+nlohmann::ordered_json BrokenMissions(ResultReader& reader) {
+  nlohmann::ordered_json broken = nlohmann::ordered_json::array();
+  for (const FailedMission& failure : reader.Failures()) {
+    const RunLayout::Stage& stage = reader.Layout().stages.at(static_cast<std::size_t>(failure.id.stage));
+    broken.push_back({{"mission", fmt::format("{}/{}/{}", stage.name,
+                                              stage.arms.at(static_cast<std::size_t>(failure.id.arm)).name,
+                                              failure.id.mission)},
+                      {"message", failure.message}});
+  }
+  return broken;
+}
+
+std::string InteractivePage(const WebBundle& bundle, const PageInputs& plain, const RunResults& results,
+                            const nlohmann::ordered_json& figures, const FolderOptions& options) {
+  ResultReader reader(options.dir);
+  const PageMissions missions = ReadPageMissions(plain.report, results, options.dir);
+  const nlohmann::ordered_json data = MakePageData({.report = plain.report,
+                                                    .provenance = plain.provenance,
+                                                    .missions = missions,
+                                                    .figures = figures,
+                                                    .question = plain.provenance.question,
+                                                    .report_command = plain.report_command,
+                                                    .figures_note = plain.figures_note,
+                                                    .broken = BrokenMissions(reader),
+                                                    .viewers = options.viewers});
+  return SelfContainedPage(plain.report.name + " – ED³R report", bundle, data, ReportContent(plain));
+}
+
 }  // namespace
 
 FolderResult WriteReportFolder(const Report& report, const RunResults& results,
@@ -130,7 +162,11 @@ FolderResult WriteReportFolder(const Report& report, const RunResults& results,
   WriteFile(figures / "README.md", CaptionsPage(results.name, data.at("figures"), figures));
   result.figures = static_cast<int>(drawn.size());
   const std::string note = result.plot_error.empty() ? result.note : "drawing failed: " + result.plot_error;
-  WriteFile(base / "index.html", ReportPage({report, provenance, std::move(drawn), note, options.command}));
+  const PageInputs plain{report, provenance, std::move(drawn), note, options.command};
+  const FoundBundle found = FindWebBundle("report");
+  result.page_note = found.why_not;
+  WriteFile(base / "index.html",
+            found.bundle ? InteractivePage(*found.bundle, plain, results, data, options) : ReportPage(plain));
   return result;
 }
 

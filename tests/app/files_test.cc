@@ -67,10 +67,18 @@ TEST_F(StoredFilesTest, EveryValueOfAStoreIsEscapedInThePage) {
   const std::string run = Altered(
       "UPDATE sessions SET begun_utc = '<b>now', host = '<script>alert(1)</script>'; "
       "UPDATE session_notes SET value = '<q>' || value");
-  ASSERT_EQ(Ed3r("report --no-figures " + run).status, 0);
+  ASSERT_EQ(Ed3r("report --no-figures " + run, "ED3R_WEB=/nonexistent").status, 0);
   const std::string page = ReadAll(fs::path(run) / "report" / "index.html");
   EXPECT_NE(page.find("&lt;b&gt;now"), std::string::npos);
   for (const char* raw : {"<script", "<b>now", "<q>"}) EXPECT_EQ(page.find(raw), std::string::npos) << raw;
+
+  std::ofstream(scratch_ / "report.js") << "program";
+  std::ofstream(scratch_ / "report.css") << "style";
+  ASSERT_EQ(Ed3r("report --no-figures " + run, "ED3R_WEB=" + scratch_.Path().string()).status, 0);
+  const std::string interactive = ReadAll(fs::path(run) / "report" / "index.html");
+  for (const char* raw : {"<b>now", "<q>", "<script>alert"})
+    EXPECT_EQ(interactive.find(raw), std::string::npos) << raw;
+  EXPECT_NE(interactive.find("\\u003cq>"), std::string::npos);
 }
 
 TEST_F(StoredFilesTest, WhatStandsInTheStoresPlaceIsNamed) {

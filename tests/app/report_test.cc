@@ -21,10 +21,16 @@ class ReportTest : public testing::Test {
   }
   static void TearDownTestSuite() { delete scratch_; }
 
-  // Reports the run of this suite into a folder of this test.
+  void SetUp() override {
+    fs::create_directories(out_ / "web");
+    std::ofstream(out_ / "web" / "report.js") << "the program";
+    std::ofstream(out_ / "web" / "report.css") << "the style";
+  }
+
+  // Reports the run of this suite into a folder of this test; the page's program is a stand-in of this test.
   CommandResult Report(const std::string& options, const std::string& environment = "") {
     return Ed3r(fmt::format("report {} --out {} {}", (*scratch_ / "run").string(), Out().string(), options),
-                environment);
+                "ED3R_WEB=" + (out_ / "web").string() + ' ' + environment);
   }
   fs::path Out() const { return out_ / "report"; }
 
@@ -173,6 +179,34 @@ TEST_F(ReportTest, ThePageTellsWhatWasRun) {
   EXPECT_NE(page.find(digest), std::string::npos);
   for (const char* part : {"rbs.yaml --missions 24 --out", "24 of 24 planned", "20260101", "SIMD", "commit "})
     EXPECT_NE(page.find(part), std::string::npos) << part;
+}
+
+TEST_F(ReportTest, ThePageHasEverythingInIt) {
+  ASSERT_EQ(Report("--no-figures").status, 0);
+  const std::string page = ReadAll(Out() / "index.html");
+  EXPECT_NE(page.find("<style>the style</style>"), std::string::npos);
+  EXPECT_NE(page.find("<script>the program</script>"), std::string::npos);
+  const std::string opening = "<script type=\"application/json\" id=\"page-data\">";
+  const auto begin = page.find(opening) + opening.size();
+  const auto data = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  EXPECT_TRUE(data.at("question").get<std::string>().starts_with("What does the rule-based baseline cost"));
+  EXPECT_EQ(data.at("arms").at(0).at("stored_name"), "online/rbs");
+  EXPECT_EQ(data.at("points").at(0).at("number").size(), 24u);
+  const auto report = nlohmann::json::parse(ReadAll(Out() / "report.json"));
+  EXPECT_EQ(data.at("slices").at("all|all").at(0).at(1),
+            report.at("arms").at("rbs").at("total_energy_kj").at("mean"));
+}
+
+TEST_F(ReportTest, WithoutItsProgramThePageIsPlainAndTheNoteSaysWhatMakesIt) {
+  const CommandResult result = Report("--no-figures", "ED3R_WEB=/nonexistent");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("note: the interactive page is not made: /nonexistent/report.js"),
+            std::string::npos)
+      << result.err;
+  EXPECT_NE(result.err.find("'scripts/setup --web' makes it\n"), std::string::npos) << result.err;
+  const std::string page = ReadAll(Out() / "index.html");
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_NE(page.find("id=\"headline\""), std::string::npos);
 }
 
 TEST_F(ReportTest, AFolderWithoutARunIsBadInput) {

@@ -1,0 +1,217 @@
+#include "studies/report/page_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "engine/core/check.h"
+#include "engine/store/reader.h"
+#include "studies/claims/verdict_tables.h"
+#include "studies/paper/claims.h"
+#include "studies/report/page_answer.h"
+#include "studies/report/page_parts.h"
+#include "studies/report/page_slices.h"
+#include "studies/tables/data_files.h"
+#include "studies/tables/paper_cell.h"
+
+namespace ed3r {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kFormat = 1;
+constexpr int kClaimWords = 70;
+
+Json Number(double value) { return std::isnan(value) ? Json(nullptr) : Json(value); }
+
+Json MetricsJson() {
+  Json list = Json::array();
+  for (const MetricDefinition& metric : MetricDefinitions())
+    list.push_back({{"name", metric.name},
+                    {"heading", MetricHeading(MetricIndex(metric.name))},
+                    {"label", metric.label},
+                    {"group", GroupTitle(metric.group)},
+                    {"unit", metric.unit},
+                    {"decimals", metric.decimals}});
+  return list;
+}
+
+Json PaperJson(const ArmMetrics& arm, std::size_t metric) {
+  const PaperCell cell = MakePaperCell(PaperClaims(), arm, metric);
+  if (!cell.value) return nullptr;
+  return {{"value", cell.value->value},
+          {"text", (cell.value->approximate ? "~" : "") + cell.value->printed},
+          {"within", cell.within},
+          {"derived", cell.value->derived},
+          {"elsewhere", cell.value->elsewhere}};
+}
+
+Json ArmJson(const PageDataInputs& inputs, std::size_t a) {
+  const Json& drawn = inputs.figures.at("arms").at(a);
+  const ArmMetrics& metrics = inputs.report.told[a];
+  Json json = Json::object();
+  for (const char* key : {"key", "stage", "name", "label", "warmup", "strategy", "eta_min_pct", "missions",
+                          "failed", "missing", "networks", "convergence", "world"})
+    json[key] = drawn.at(key);
+  json["stored_name"] = metrics.stage + '/' + metrics.name + inputs.missions.ending;
+  json["paper"] = Json::object();
+  for (std::size_t m = 0; m < metrics.values.size(); ++m)
+    if (Json paper = PaperJson(metrics, m); !paper.is_null())
+      json["paper"][std::string(MetricDefinitions()[m].name)] = std::move(paper);
+  return json;
+}
+
+Json ClaimJson(const JudgedClaim& judged) {
+  const Claim& claim = judged.claim;
+  const Judgement& all = judged.all;
+  Json json = {{"id", claim.id},
+               {"where", claim.where},
+               {"arms", claim.strategy},
+               {"metric", claim.metric},
+               {"kind", claim.kind},
+               {"claim", ClaimInWords(claim, kClaimWords)},
+               {"words", claim.exact_words},
+               {"paper", Number(all.paper)},
+               {"ours", Number(all.ours)},
+               {"lo", Number(all.lo)},
+               {"hi", Number(all.hi)},
+               {"p", Number(all.p_holm)},
+               {"p_against", Number(all.p_against_holm)},
+               {"verdict", NameOf(all.verdict)},
+               {"told", NameWithLuck(judged)},
+               {"repeats", judged.repeats},
+               {"why", all.why}};
+  if (judged.asks_networks && !judged.by_network.empty()) {
+    const auto same = std::count_if(judged.by_network.begin(), judged.by_network.end(),
+                                    [&](const Judgement& alone) { return alone.verdict == all.verdict; });
+    json["networks"] = {same, judged.by_network.size()};
+  }
+  return json;
+}
+
+Json ClaimsJson(const ClaimStudy& study) {
+  Json json = {{"scenarios", study.scenarios},
+               {"networks", study.networks},
+               {"counts", Json::array()},
+               {"list", Json::array()}};
+  if (!study.HasArms()) return json;
+  for (const auto& [verdict, count] : CountVerdicts(study))
+    json["counts"].push_back({NameOf(verdict), count, Holds(verdict)});
+  for (const JudgedClaim& judged : study.claims) json["list"].push_back(ClaimJson(judged));
+  return json;
+}
+
+Json TableJson(const StudyTable& table) {
+  Json json = {{"id", table.id},           {"title", table.title},  {"arms_down", table.arms_down},
+               {"labels", table.labels},   {"arms", Json::array()}, {"missions", Json::array()},
+               {"metrics", table.metrics}, {"cells", Json::array()}};
+  for (const ArmMetrics& arm : table.arms) {
+    json["arms"].push_back(arm.name);
+    json["missions"].push_back(arm.missions);
+    Json row = Json::array();
+    for (const std::size_t m : table.metrics) {
+      const MetricValue& value = arm.values[m];
+      row.push_back({Number(value.value), Number(value.lo), Number(value.hi), PaperJson(arm, m)});
+    }
+    json["cells"].push_back(std::move(row));
+  }
+  return json;
+}
+
+// Sites that the warm-up of any arm had seen.
+Json KnownSites(std::span<const ArmData> arms) {
+  std::set<std::int64_t> known;
+  for (const ArmData& arm : arms)
+    for (const MissionRecord& mission : arm.missions)
+      if (mission.site_known != 0) known.insert(mission.site);
+  return known;
+}
+
+Json RunJson(const PageDataInputs& inputs) {
+  const Provenance& p = inputs.provenance;
+  Json json = ManifestJson(p);
+  json["dir"] = p.dir;
+  json["planned"] = p.planned;
+  json["mixed_code"] = p.mixed_code;
+  json["report_command"] = inputs.report_command;
+  json["figures_note"] = inputs.figures_note;
+  if (!p.sessions.empty()) {
+    json["begun"] = p.sessions.front().begun_utc;
+    json["ended"] = p.sessions.back().ended_utc;
+    json["sessions"] = p.sessions.size();
+  }
+  return json;
+}
+
+const ArmData* Find(std::span<const ArmData> arms, const ArmMetrics& wanted) {
+  for (const ArmData& arm : arms)
+    if (arm.stage == wanted.stage && arm.name == wanted.name) return &arm;
+  return nullptr;
+}
+
+// A mission that came in since the run was loaded is left out.
+std::vector<int> NumbersOf(ResultReader& reader, const std::string& stored_name, const ArmData& arm) {
+  std::map<std::int64_t, int> by_scenario;
+  const RunLayout& layout = reader.Layout();
+  for (std::size_t s = 0; s < layout.stages.size(); ++s)
+    for (std::size_t a = 0; a < layout.stages[s].arms.size(); ++a)
+      if (layout.stages[s].missions > 0 && layout.stages[s].name == arm.stage &&
+          layout.stages[s].arms[a].name == stored_name)
+        reader.ForEachMission(
+            static_cast<int>(s), static_cast<int>(a), Steps::kSkip,
+            [&](const StoredMission& mission) { by_scenario[mission.record.scenario] = mission.id.mission; });
+  std::vector<int> numbers;
+  for (const MissionRecord& mission : arm.missions) {
+    const auto found = by_scenario.find(mission.scenario);
+    ED3R_CHECK(found != by_scenario.end(), "a stored mission stays stored");
+    numbers.push_back(found->second);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+PageMissions ReadPageMissions(const Report& report, const RunResults& results, const std::string& dir) {
+  ResultReader reader(dir);
+  const std::vector<std::string>& variants = report.variants.variants;
+  PageMissions page;
+  page.ending = variants.empty() ? "" : '@' + variants.front();
+  const std::vector<ArmData> arms =
+      variants.empty() ? results.arms : ArmsOfVariant(results.arms, variants.front());
+  for (const ArmMetrics& told : report.told) {
+    const ArmData* arm = Find(arms, told);
+    ED3R_CHECK(arm != nullptr, "the missions of an arm that is told");
+    page.arms.push_back(*arm);
+    page.numbers.push_back(NumbersOf(reader, arm->name + page.ending, *arm));
+  }
+  return page;
+}
+
+Json MakePageData(const PageDataInputs& inputs) {
+  const Report& report = inputs.report;
+  std::vector<bool> warmups;
+  for (const Json& arm : inputs.figures.at("arms")) warmups.push_back(arm.at("warmup").get<bool>());
+  Json data = {{"format", kFormat},           {"name", report.name},
+               {"question", inputs.question}, {"answer", AnswerSentences(report, warmups)},
+               {"metrics", MetricsJson()},    {"arms", Json::array()}};
+  for (std::size_t a = 0; a < report.told.size(); ++a) data["arms"].push_back(ArmJson(inputs, a));
+  data["slices"] = SlicesJson(inputs.missions.arms, report.told);
+  data["histograms"] = HistogramsJson(inputs.missions.arms);
+  data["points"] = PointsJson(inputs.missions.arms, inputs.missions.numbers);
+  data["failures"] = FailuresJson(inputs.missions.arms, inputs.missions.numbers);
+  data["known_sites"] = KnownSites(inputs.missions.arms);
+  data["broken"] = inputs.broken;
+  data["claims"] = ClaimsJson(report.claims);
+  data["tables"] = Json::array();
+  for (const StudyTable& table : report.tables) data["tables"].push_back(TableJson(table));
+  for (const char* part : {"world", "world_note", "missions_shown", "variants", "figures"})
+    data[part] = inputs.figures.at(part);
+  data["run"] = RunJson(inputs);
+  data["viewers"] = inputs.viewers;
+  return data;
+}
+
+}  // namespace ed3r

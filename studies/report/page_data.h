@@ -1,0 +1,42 @@
+// What the interactive page shows, as one JSON document that is inlined into it. Its reader is studies/report/web/.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "studies/report/provenance.h"
+#include "studies/report/report.h"
+
+namespace ed3r {
+
+struct PageMissions {
+  std::vector<ArmData> arms;              // those that the report tells, in its order
+  std::vector<std::vector<int>> numbers;  // of their missions, for `ed3r replay`
+  std::string ending;                     // "@VARIANT" that the store's names of these arms have; mostly ""
+};
+
+// The missions of the arms told, with their numbers. Throws UserError as LoadRun.
+PageMissions ReadPageMissions(const Report& report, const RunResults& results, const std::string& dir);
+
+struct PageDataInputs {
+  const Report& report;
+  const Provenance& provenance;
+  const PageMissions& missions;
+  const nlohmann::ordered_json& figures;  // the document of studies/figures/figure_data.h
+  std::string question;                   // of the study; "" where it is not known
+  std::string report_command;
+  std::string figures_note;
+  // Missions that failed inside the program: {"mission", "message"}.
+  nlohmann::ordered_json broken = nlohmann::ordered_json::array();
+  // Mission viewers beside the page: {"mission", "what", "file"}.
+  nlohmann::ordered_json viewers = nlohmann::ordered_json::array();
+};
+
+// {"format", "name", "question", "answer": [sentences], "metrics", "arms", "slices", "histograms", "points", "failures",
+// "known_sites", "broken", "claims", "tables", "world", "missions_shown", "variants", "figures", "run": provenance for people,
+// "viewers"}; parts as in page_slices.h and figure_data.h. Pure.
+nlohmann::ordered_json MakePageData(const PageDataInputs& inputs);
+
+}  // namespace ed3r

@@ -1,0 +1,124 @@
+// The mission viewer in a real browser: ED3R_VIEWER is the folder of `ed3r replay --html --beside`.
+import assert from "node:assert/strict";
+import { readFileSync, statSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join, resolve } from "node:path";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const folder = resolve(process.env.ED3R_VIEWER);
+const shots = process.env.ED3R_SHOTS;
+const file = join(folder, "mission.html");
+const address = pathToFileURL(file).href;
+const axe = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
+const [head, ...lines] = readFileSync(join(folder, "timesteps.csv"), "utf8").trim().split("\n");
+const columns = head.split(",");
+const stored = lines.map((line) =>
+  Object.fromEntries(line.split(",").map((cell, i) => [columns[i], Number(cell)])),
+);
+
+let browser;
+before(async () => {
+  browser = await chromium.launch({
+    executablePath: process.env.ED3R_CHROMIUM,
+    args: ["--no-sandbox", "--enable-unsafe-swiftshader", "--use-gl=angle", "--use-angle=swiftshader"],
+  });
+});
+after(() => browser?.close());
+
+async function open(options = {}, fragment = "") {
+  const page = await browser.newPage({ viewport: { width: 1000, height: 700 }, ...options });
+  page.faults = [];
+  // Of WebGL drivers alone: reading back pixels for a screenshot is slow.
+  page.on("console", (message) => message.type() === "error" && page.faults.push(message.text()));
+  page.on("pageerror", (error) => page.faults.push(error.message));
+  page.on("request", (request) => {
+    if (!/^(data|blob):/.test(request.url()) && request.url().split("#")[0] !== address)
+      page.faults.push(`asked for ${request.url()}`);
+  });
+  await page.goto(address + fragment);
+  await page.waitForSelector("html[data-ready]");
+  return page;
+}
+
+/** To this part of the first mission's timestep: 1 is its end, where the robot stands as the record has it. */
+async function scrubTo(page, k, share) {
+  const time = await page.evaluate(
+    ([k, share]) => {
+      const { begin_s: begin, duration_s: duration } = JSON.parse(
+        document.getElementById("page-data").textContent,
+      ).missions[0].steps;
+      const bar = document.querySelector("#controls input");
+      bar.value = begin[k - 1] + share * duration[k - 1];
+      bar.dispatchEvent(new Event("input"));
+      return Number(bar.value);
+    },
+    [k, share],
+  );
+  return time;
+}
+
+const place = (page) => page.$eval(".panel", (panel) => ({ ...panel.dataset }));
+
+for (const fragment of ["", "#map"])
+  test(`the scrub bar moves the robot to the stored pose${fragment && ", seen from above"}`, async () => {
+    const page = await open({}, fragment);
+    assert.equal(
+      await page.$$eval(".view canvas", (list) => list.length > 0),
+      fragment === "",
+      "WebGL or the map",
+    );
+    for (const row of [stored[0], stored.at(-1)]) {
+      await scrubTo(page, row.k, 0.999);
+      const shown = await place(page);
+      assert.equal(Number(shown.step), row.k);
+      for (const axis of ["x", "y", "z"])
+        assert.ok(
+          Math.abs(Number(shown[axis]) - row[`${axis}_m`]) < 1e-3,
+          `${axis} ${shown[axis]} ${row[`${axis}_m`]}`,
+        );
+    }
+    assert.deepEqual(page.faults, []);
+    if (shots) await page.screenshot({ path: join(shots, `viewer${fragment.replace("#", "-")}.png`) });
+    await page.close();
+  });
+
+test("play moves time on, pause stops it, keys step", async () => {
+  const page = await open({}, "#map");
+  const time = () => page.$eval("#controls input", (bar) => Number(bar.value));
+  await page.click(".play");
+  await page.waitForFunction(() => Number(document.querySelector("#controls input").value) > 1);
+  await page.click(".play");
+  const stopped = await time();
+  await page.waitForTimeout(200);
+  assert.equal(await time(), stopped);
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("Home");
+  await page.keyboard.press("ArrowRight");
+  assert.equal(Number((await place(page)).step), Math.min(2, stored.length));
+  await page.close();
+});
+
+test("two missions share the page, and no axe fault", async () => {
+  const page = await open({ viewport: { width: 1400, height: 1000 }, bypassCSP: true }, "#map");
+  assert.equal((await page.$$(".mission")).length, 2);
+  await page.addScriptTag({ path: axe });
+  const found = await page.evaluate(() =>
+    axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa", "best-practice"] }),
+  );
+  assert.deepEqual(
+    found.violations.map(
+      (fault) => `${fault.impact} ${fault.id}: ${fault.nodes.length} × ${fault.nodes[0].html.slice(0, 140)}`,
+    ),
+    [],
+  );
+  await page.close();
+});
+
+test("it is small and fits a phone", async () => {
+  assert.ok(statSync(file).size < 3e6, `${statSync(file).size} bytes`);
+  const page = await open({ viewport: { width: 390, height: 844 } }, "#map");
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
+  await page.close();
+});

@@ -1,0 +1,63 @@
+// The ground of a chart: an SVG as wide as its place, margins, axes.
+import { axisBottom, axisLeft } from "d3-axis";
+import { select } from "d3-selection";
+import { el, svg } from "./dom.js";
+
+/** A figure with a heading, a place for the picture, a caption and, behind it, its numbers. */
+export function figure(id, title, caption) {
+  const controls = el("div", { class: "controls" });
+  const picture = el("div", { class: "picture" });
+  const behind = el("div");
+  const node = el(
+    "figure",
+    { id, "aria-labelledby": `${id}-title` },
+    el("div", { class: "figure-head" }, el("h3", { id: `${id}-title` }, title), controls),
+    picture,
+    el("figcaption", {}, caption),
+    behind,
+  );
+  return { node, picture, controls, behind };
+}
+
+/** {root, inner, width, height} of the plotting area. */
+export function canvas(place, { height, label, margin }) {
+  const full = Math.max(place.clientWidth, 260);
+  const inner = svg("g", { transform: `translate(${margin.left},${margin.top})` });
+  const root = svg(
+    "svg",
+    { viewBox: `0 0 ${full} ${height}`, width: full, height, role: "group", "aria-label": label },
+    inner,
+  );
+  return {
+    root,
+    inner,
+    width: full - margin.left - margin.right,
+    height: height - margin.top - margin.bottom,
+  };
+}
+
+/** Axes at the left and below, with what they count. */
+export function axes(ground, x, y, labels, ticks = {}) {
+  const { inner, width, height } = ground;
+  if (x) {
+    const axis = svg("g", { class: "axis", transform: `translate(0,${height})`, "aria-hidden": "true" });
+    select(axis).call(
+      axisBottom(x)
+        .ticks(ticks.x ?? Math.max(3, width / 90), ticks.xFormat)
+        .tickSizeOuter(0),
+    );
+    inner.append(
+      axis,
+      svg("text", { class: "axis-label", x: width, y: height + 36, "text-anchor": "end" }, labels.x),
+    );
+  }
+  if (y) {
+    const axis = svg("g", { class: "axis grid", "aria-hidden": "true" });
+    select(axis).call(
+      axisLeft(y)
+        .ticks(ticks.y ?? 5, ticks.yFormat)
+        .tickSize(-width),
+    );
+    inner.append(axis, svg("text", { class: "axis-label", x: -8, y: -12, "text-anchor": "start" }, labels.y));
+  }
+}

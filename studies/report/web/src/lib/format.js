@@ -1,0 +1,31 @@
+// Numbers as the text tables print them.
+
+const MINUS = "−";
+
+/** `decimals` digits after the point; "–" for none. Large numbers keep four digits. */
+export function number(value, decimals = 2) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  const size = Math.abs(value);
+  const digits = size >= 999.95 ? 0 : size >= 99.995 ? Math.min(decimals, 1) : decimals;
+  return value.toFixed(digits).replace("-", MINUS);
+}
+
+/** "8.13–13.19", "" where there is no interval. */
+export const interval = (lo, hi, decimals) =>
+  lo === null || lo === undefined || hi === null || hi === undefined
+    ? ""
+    : `${number(lo, decimals)}–${number(hi, decimals)}`;
+
+/** "10.66 kJ (8.13–13.19)". */
+export function withInterval(cell, metric) {
+  if (!cell || cell.value === null) return "none";
+  const range = interval(cell.lo, cell.hi, metric.decimals);
+  return `${number(cell.value, metric.decimals)} ${metric.unit}${range && ` (${range})`}`.trim();
+}
+
+export const pValue = (p) =>
+  p === null || p === undefined ? "" : p < 0.0001 ? "<0.0001" : p.toFixed(p < 0.01 ? 4 : 3);
+
+export const count = (n) => n.toLocaleString("en-GB");
+
+export const plural = (n, one, many = `${one}s`) => `${count(n)} ${n === 1 ? one : many}`;

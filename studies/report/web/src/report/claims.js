@@ -1,0 +1,148 @@
+// The paper's claims and what became of them, filtered by verdict, arm, metric and certainty.
+import { el } from "../lib/dom.js";
+import { interval, number, pValue } from "../lib/format.js";
+import { sortedTable } from "../lib/table.js";
+import { select } from "./filterbar.js";
+
+const CERTAINTY = [
+  ["all", "all"],
+  ["p001", "p < 0.001"],
+  ["p05", "p < 0.05"],
+  ["open", "p ≥ 0.05"],
+  ["none", "no p value"],
+];
+
+/** The smaller of the two p values: for the claim, or for its opposite. */
+const decisive = (claim) => {
+  const both = [claim.p, claim.p_against].filter((p) => p !== null);
+  return both.length > 0 ? Math.min(...both) : null;
+};
+
+export function certaintyOf(claim) {
+  const p = decisive(claim);
+  return p === null ? ["none"] : p < 0.001 ? ["p001", "p05"] : p < 0.05 ? ["p05"] : ["open"];
+}
+
+/** Claims that pass the filters; `names` are the arms chosen, none: all. */
+export const filterClaims = (claims, { verdict, about, sure }, names) =>
+  claims.filter(
+    (claim) =>
+      (verdict === "all" || claim.verdict === verdict) &&
+      (about === "all" || claim.metric === about) &&
+      (sure === "all" || certaintyOf(claim).includes(sure)) &&
+      (names.length === 0 || claim.arms.split(" ").some((arm) => names.includes(arm.replace(/-p85$/, "")))),
+  );
+
+export function claims(model, store) {
+  const { claims: study, run } = model.data;
+  const judged = study.list.filter((claim) => claim.verdict !== "not measured");
+  if (judged.length === 0) return null;
+  const chips = study.counts
+    .filter(([verdict]) => verdict !== "not measured")
+    .map(([verdict, n]) =>
+      el(
+        "button",
+        {
+          type: "button",
+          class: `chip verdict ${classOf(verdict)}`,
+          "data-verdict": verdict,
+          onclick: () => store.toggle("verdict", verdict),
+        },
+        el("b", {}, n),
+        ` ${verdict}`,
+      ),
+    );
+  const metrics = [...new Set(judged.map((claim) => claim.metric))].sort();
+  const about = select(
+    "Metric",
+    [["all", "all"], ...metrics.map((m) => [m, model.byName[m]?.label ?? m.replaceAll("_", " ")])],
+    (value) => store.set({ about: value }),
+  );
+  const sure = select("Certainty", CERTAINTY, (value) => store.set({ sure: value }));
+  const unmeasured = study.counts.find(([verdict]) => verdict === "not measured")?.[1] ?? 0;
+  const shown = el("p", { class: "key", "aria-live": "polite" });
+  const list = el("div");
+  const node = el(
+    "section",
+    { id: "claims" },
+    el("h2", {}, "The paper's claims"),
+    el("div", { class: "chips" }, chips),
+    el("div", { class: "choices" }, about.node, sure.node),
+    shown,
+    list,
+    el(
+      "p",
+      { class: "key" },
+      `Orders and comparisons are paired by scenario (${study.scenarios} of them) and resampled over ${study.networks > 1 ? `${study.networks} trained networks and missions` : "missions"}; p is corrected by Holm over all of them; with ! the opposite is the likelier. ` +
+        "“alone”: how many of the networks by themselves would have given the verdict. (luck): it differs, but no more than one network on the paper's number of missions may; (luck?): networks spread too widely to tell. " +
+        `${unmeasured} claims are not measured by this run. All of it: `,
+      el("a", { href: "verdicts.csv" }, "verdicts.csv"),
+      study.networks > 1 && [", ", el("a", { href: "by_network.csv" }, "by_network.csv")],
+      run.figures_note && "",
+    ),
+  );
+  return {
+    node,
+    title: "Claims",
+    update(state) {
+      for (const chip of chips)
+        chip.setAttribute("aria-pressed", String(chip.dataset.verdict === state.verdict));
+      about.input.value = state.about;
+      sure.input.value = state.sure;
+      const names = state.arms.map((key) => model.arms.find((arm) => arm.key === key)?.name);
+      const found = filterClaims(judged, state, names);
+      shown.textContent = `${found.length} of ${judged.length} judged claims${names.length > 0 ? ", those that speak of the arms chosen" : ""}.`;
+      list.replaceChildren(
+        sortedTable(columns(model, study), found, { caption: "Claims of the paper and their verdicts" }),
+      );
+    },
+  };
+}
+
+const classOf = (verdict) => `v-${verdict.split(" ")[0]}`;
+
+const columns = (model, study) => [
+  { label: "claim", text: (c) => c.id, key: (c) => c.id, left: true },
+  {
+    label: "says",
+    left: true,
+    key: (c) => c.claim,
+    text: (c) =>
+      el(
+        "div",
+        { class: "says" },
+        c.claim,
+        el("small", {}, `“${c.words}” (${c.where})`),
+        el("small", { class: "why" }, c.why, c.repeats && ` · says the same as ${c.repeats}`),
+      ),
+  },
+  { label: "paper", text: (c) => (c.paper === null ? "" : number(c.paper, 2)), key: (c) => c.paper },
+  {
+    label: "ours, 95 %",
+    text: (c) => [number(c.ours, 2), el("i", {}, interval(c.lo, c.hi, 2))].map((part) => part),
+    key: (c) => c.ours,
+  },
+  {
+    label: "p",
+    text: (c) =>
+      decisive(c) === null
+        ? ""
+        : pValue(decisive(c)) + (c.p_against !== null && c.p_against < (c.p ?? 2) ? "!" : ""),
+    key: decisive,
+  },
+  ...(study.networks > 1
+    ? [
+        {
+          label: "alone",
+          text: (c) => (c.networks ? `${c.networks[0]} of ${c.networks[1]}` : ""),
+          key: (c) => c.networks?.[0],
+        },
+      ]
+    : []),
+  {
+    label: "verdict",
+    left: true,
+    text: (c) => el("span", { class: `verdict ${classOf(c.verdict)}` }, c.told),
+    key: (c) => c.told,
+  },
+];

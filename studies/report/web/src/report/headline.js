@@ -1,0 +1,193 @@
+// The first screen: the study's question, the answer, the main metrics beside the paper's.
+import { scaleLinear } from "d3-scale";
+import { el, svg } from "../lib/dom.js";
+import { count, interval, number, withInterval } from "../lib/format.js";
+import { order } from "../lib/table.js";
+import { withTooltip } from "../lib/tooltip.js";
+
+const MAIN = ["total_energy_kj", "duration_mean_min", "msr_pct", "fp_pct", "bd_pct", "wer_pct", "mscs_pct"];
+
+export function headline(model, store) {
+  const { data } = model;
+  const text = el(
+    "div",
+    { class: "lead" },
+    el("p", { class: "kicker" }, `${data.name} · ${told(data)}`),
+    el("h1", {}, data.question || data.name),
+    el("p", { class: "answer" }, data.answer.length ? data.answer.join(" ") : "No missions yet."),
+  );
+  const table = el("div", {
+    class: "wide",
+    tabindex: 0,
+    role: "region",
+    "aria-label": "Main results beside the paper's",
+  });
+  const note = el("p", { class: "key" });
+  const node = el(
+    "section",
+    { id: "headline", "aria-label": "What came out" },
+    text,
+    model.shown.length > 0 && [table, note],
+  );
+  return {
+    node,
+    title: "Results",
+    update(state) {
+      if (model.shown.length === 0) return;
+      table.replaceChildren(headTable(model, store, state));
+      note.replaceChildren(...key(state, model));
+    },
+  };
+}
+
+function told(data) {
+  const flown = data.arms.reduce((sum, arm) => sum + arm.missions, 0);
+  const networks = Math.max(...data.arms.map((arm) => arm.networks), 0);
+  return `${count(flown)} missions flown${networks > 1 ? `, ${networks} trained networks of each kind` : ""}`;
+}
+
+const filtered = (state) => state.site !== "all" || state.outcome !== "all";
+
+const key = (state, model) => [
+  el("b", {}, "Bold"),
+  " ours, beneath it the 95 % interval, also drawn on a scale common to the column; ",
+  el("span", { class: "paper-mark", "aria-hidden": "true" }, "◇"),
+  " the paper's value, ",
+  el("span", { class: "within" }, "filled ◆"),
+  " where our interval holds it, give or take its rounding. ",
+  filtered(state)
+    ? "The paper's values are of all missions and are not shown beside a selection."
+    : model.data.claims.networks > 1
+      ? "Intervals hold the luck of training."
+      : "",
+];
+
+function headTable(model, store, state) {
+  const metrics = MAIN.map((name) => model.byName[name]);
+  const arms = sorted(model, state);
+  const scales = metrics.map((metric) => columnScale(model, metric, arms, state));
+  const choose = (name) => store.set({ sort: state.sort === `-${name}` ? name : `-${name}` });
+  const heads = metrics.map((metric) =>
+    el(
+      "th",
+      { scope: "col", "aria-sort": sortOf(state, metric.name), title: metric.label },
+      el("button", { type: "button", class: "sort", onclick: () => choose(metric.name) }, metric.heading),
+    ),
+  );
+  return el(
+    "table",
+    { class: "headline", id: "headline-table" },
+    el("caption", { class: "hidden" }, "Main results of each arm beside the paper's"),
+    el("thead", {}, el("tr", {}, el("th", { scope: "col", class: "left" }, "arm"), heads)),
+    el(
+      "tbody",
+      {},
+      arms.map((arm) =>
+        el(
+          "tr",
+          { "data-arm": arm.key },
+          el(
+            "th",
+            { scope: "row", class: "left" },
+            armButton(arm, store, state),
+            " ",
+            el("small", {}, missionsOf(model, arm, state)),
+          ),
+          metrics.map((metric, i) => cellOf(model, arm, metric, scales[i], state)),
+        ),
+      ),
+    ),
+  );
+}
+
+const missionsOf = (model, arm, state) =>
+  `${count(model.missions(arm, state))} ${arm.failed ? `(+${count(arm.failed)} broke down) ` : ""}${
+    arm.missing ? `(${count(arm.missing)} missing)` : ""
+  }`;
+
+const sortOf = (state, name) =>
+  state.sort === name ? "ascending" : state.sort === `-${name}` ? "descending" : "none";
+
+function sorted(model, state) {
+  const arms = model.chosen(state);
+  const name = state.sort.replace(/^-/, "");
+  if (!model.byName[name]) return arms;
+  const sign = state.sort.startsWith("-") ? -1 : 1;
+  const value = (arm) => model.cell(arm, name, state)?.value;
+  return [...arms].sort((a, b) => sign * order(value(a), value(b)));
+}
+
+const armButton = (arm, store, state) =>
+  el(
+    "button",
+    {
+      type: "button",
+      class: "arm",
+      style: `--c:${arm.colour}`,
+      "aria-pressed": String(state.arms.includes(arm.key)),
+      onclick: () => store.toggleArm(arm.key),
+    },
+    el("span", { class: "swatch", "aria-hidden": "true" }),
+    arm.label,
+  );
+
+function columnScale(model, metric, arms, state) {
+  const ends = [];
+  for (const arm of arms) {
+    const cell = model.cell(arm, metric.name, state);
+    if (cell) ends.push(cell.value, cell.lo, cell.hi);
+    if (!filtered(state)) ends.push(arm.paper[metric.name]?.value);
+  }
+  const real = ends.filter((end) => end !== null && end !== undefined);
+  const low = Math.min(...real),
+    high = Math.max(...real);
+  return scaleLinear([low, high > low ? high : low + 1], [5, 95]);
+}
+
+function cellOf(model, arm, metric, scale, state) {
+  const cell = model.cell(arm, metric.name, state);
+  if (!cell || cell.value === null) return el("td", {}, "–");
+  const paper = filtered(state) ? undefined : arm.paper[metric.name];
+  const node = el(
+    "td",
+    { "data-metric": metric.name, "data-value": cell.value },
+    el(
+      "div",
+      { class: "pair" },
+      paper
+        ? el(
+            "span",
+            { class: paper.within ? "paper within" : "paper" },
+            `${paper.within ? "◆" : "◇"} ${paper.text}`,
+          )
+        : el("span"),
+      el("b", {}, number(cell.value, metric.decimals)),
+    ),
+    el("i", {}, interval(cell.lo, cell.hi, metric.decimals) || "\u00a0"),
+    strip(cell, paper, scale, arm),
+  );
+  return withTooltip(node, () => [
+    `${arm.label}: ${metric.label}`,
+    `ours ${withInterval(cell, metric)}`,
+    `${count(cell.missions)} missions`,
+    paper && `paper ${paper.text} ${metric.unit}${paper.derived ? " (derived, not printed)" : ""}`,
+    paper?.elsewhere?.length && `elsewhere in the paper: ${paper.elsewhere.join(", ")}`,
+  ]);
+}
+
+const strip = (cell, paper, scale, arm) =>
+  svg(
+    "svg",
+    {
+      class: "strip",
+      viewBox: "0 0 100 10",
+      preserveAspectRatio: "none",
+      "aria-hidden": "true",
+      style: `--c:${arm.colour}`,
+    },
+    svg("line", { x1: 0, x2: 100, y1: 5, y2: 5, class: "ground" }),
+    cell.lo !== null && svg("line", { x1: scale(cell.lo), x2: scale(cell.hi), y1: 5, y2: 5, class: "range" }),
+    svg("line", { x1: scale(cell.value), x2: scale(cell.value), y1: 0.5, y2: 9.5, class: "mean" }),
+    paper &&
+      svg("line", { x1: scale(paper.value), x2: scale(paper.value), y1: 0.5, y2: 9.5, class: "theirs" }),
+  );

@@ -1,0 +1,154 @@
+import "../viewer.css";
+import { button, el } from "../lib/dom.js";
+import { number } from "../lib/format.js";
+import { isDark } from "../lib/relief.js";
+import { makeClock } from "./clock.js";
+import { makeMap } from "./map2d.js";
+import { makeMission, OUTCOMES } from "./mission.js";
+import { decisionPanel } from "./panel.js";
+import { hasWebGl, makeScene } from "./scene3d.js";
+import { timelines } from "./timelines.js";
+
+const SPEEDS = [1, 2, 5, 10, 20, 60];
+const LOOKS = { overview: "Overview", follow: "Follow", onboard: "On board" };
+
+const data = JSON.parse(document.getElementById("page-data").textContent);
+const flat = !hasWebGl() || new URLSearchParams(location.hash.slice(1)).has("map");
+const clock = makeClock(Math.max(...data.missions.map((mission) => mission.duration_s)));
+
+const columns = data.missions.map((missionData) => {
+  const mission = makeMission(missionData);
+  const view = flat ? makeMap(data.world, mission) : makeScene(data.world, mission, isDark());
+  const panel = decisionPanel(mission);
+  const lines = timelines(mission, clock);
+  const end = OUTCOMES[missionData.outcome];
+  const node = el(
+    "section",
+    { class: "mission", "aria-label": missionData.name },
+    el(
+      "div",
+      { class: "title" },
+      el("h2", {}, `${missionData.label}, mission ${missionData.number}`),
+      el(
+        "p",
+        {},
+        el("b", { class: `outcome o-${missionData.outcome}` }, end),
+        ` after ${mission.count} timesteps, ${number(missionData.duration_s / 60, 2)} min, ${number(missionData.energy_j / 1000, 2)} kJ`,
+      ),
+      !missionData.identical && el("p", { class: "note" }, "This flight differs from the stored record."),
+    ),
+    view.node,
+    panel.node,
+    lines.node,
+  );
+  return { node, view, panel, lines };
+});
+
+const play = button("Play", () => clock.toggle(), { class: "play" });
+const scrub = el("input", {
+  type: "range",
+  min: 0,
+  max: clock.end,
+  step: "any",
+  value: 0,
+  "aria-label": "Mission time",
+  oninput: () => clock.set(Number(scrub.value)),
+});
+const told = el("output", { class: "time" });
+const speed = el(
+  "select",
+  { "aria-label": "Speed", onchange: () => clock.setSpeed(Number(speed.value)) },
+  SPEEDS.map((factor) => el("option", { value: factor, selected: factor === clock.speed() }, `${factor}×`)),
+);
+const looks = Object.entries(LOOKS).map(([id, label]) =>
+  button(label, () => lookFrom(id), { "data-look": id }),
+);
+const same = data.missions.length > 1 && data.missions[0].scenario === data.missions[1].scenario;
+
+document.getElementById("app").append(
+  el(
+    "header",
+    {},
+    el(
+      "h1",
+      {},
+      el("small", {}, `ED³R · ${data.run} · `),
+      data.missions.map((mission) => mission.name).join(" beside "),
+    ),
+    data.missions.length > 1 &&
+      el(
+        "p",
+        { class: "key" },
+        same ? "The same scenario: fire, start, radio and CPU draws are equal." : "Different scenarios.",
+      ),
+    flat && el("p", { class: "note" }, "Seen from above: this browser has no WebGL."),
+  ),
+  el(
+    "main",
+    { class: columns.length > 1 ? "beside" : "" },
+    columns.map((column) => column.node),
+  ),
+  el(
+    "div",
+    { id: "controls", role: "region", "aria-label": "Time" },
+    play,
+    button("⏮", () => step(-1), { "aria-label": "Previous timestep" }),
+    button("⏭", () => step(1), { "aria-label": "Next timestep" }),
+    scrub,
+    told,
+    speed,
+    !flat && el("div", { class: "looks", role: "group", "aria-label": "Point of view" }, looks),
+  ),
+);
+
+/** To the begin of the next or the previous timestep of the first mission. */
+function step(by) {
+  const { begin_s: begins } = data.missions[0].steps;
+  const now = clock.time();
+  const to =
+    by > 0 ? begins.find((begin) => begin > now + 1e-6) : begins.findLast((begin) => begin < now - 1e-6);
+  clock.set(to ?? (by > 0 ? clock.end : 0));
+}
+
+function lookFrom(id) {
+  for (const { view } of columns) view.look(id);
+  for (const choice of looks) choice.setAttribute("aria-pressed", String(choice.dataset.look === id));
+}
+
+function update(time, playing) {
+  play.textContent = playing ? "Pause" : "Play";
+  scrub.value = time;
+  scrub.setAttribute("aria-valuetext", `${number(time / 60, 2)} minutes`);
+  told.textContent = `${number(time, 1)} s of ${number(clock.end, 1)} s`;
+  for (const { view, panel, lines } of columns) {
+    view.update(time);
+    panel.update(time);
+    lines.update(time);
+  }
+}
+
+addEventListener("keydown", (event) => {
+  if (event.target.closest?.("input,select,button") || event.ctrlKey || event.metaKey) return;
+  const act = {
+    " ": () => clock.toggle(),
+    ArrowRight: () => step(1),
+    ArrowLeft: () => step(-1),
+    Home: () => clock.set(0),
+    End: () => clock.set(clock.end),
+  }[event.key];
+  if (!act) return;
+  event.preventDefault();
+  act();
+});
+const drawAll = () => {
+  for (const { view, lines } of columns) {
+    view.draw();
+    lines.draw();
+  }
+  update(clock.time(), clock.playing());
+};
+addEventListener("resize", drawAll);
+clock.listen(update);
+drawAll();
+lookFrom("overview");
+document.documentElement.dataset.ready = "yes";

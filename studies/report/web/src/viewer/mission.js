@@ -1,0 +1,79 @@
+// A mission by time: which timestep, which part of it, where the robot is.
+
+export const EXECUTIONS = ["offload", "full", "quantized"];
+export const EXECUTION_LABELS = ["offloaded", "Full, on board", "Quantized, on board"];
+export const OUTCOMES = ["success", "false alarm", "battery empty"];
+
+const lastAtOrBefore = (list, value) => {
+  let low = 0,
+    high = list.length - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (list[middle] <= value) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+};
+
+export function makeMission(data) {
+  const { steps, track } = data;
+  const count = steps.k.length;
+
+  /** Index of the timestep at `time`, from 0. */
+  const stepAt = (time) => lastAtOrBefore(steps.begin_s, Math.min(time, data.duration_s));
+
+  const moving = (i) => steps.horizontal_s[i] + steps.ascent_s[i] + steps.descent_s[i] + steps.turning_s[i];
+
+  /** What the robot does at `time`. */
+  function phase(time) {
+    const i = stepAt(time);
+    let rest = Math.min(time, data.duration_s) - steps.begin_s[i];
+    for (const [name, length] of [
+      ["flying", moving(i)],
+      ["sensing", steps.sensing_s[i]],
+      ["computing", steps.computing_s[i]],
+      ["transmitting", steps.transmitting_s[i]],
+    ]) {
+      if (rest < length) return name;
+      rest -= length;
+    }
+    return time >= data.duration_s ? "ended" : "transmitting";
+  }
+
+  /** Where the robot is; after a timestep's flight the pose that was stored for it. */
+  function pose(time) {
+    const i = stepAt(time);
+    const tilt = steps.tilt_rad[i];
+    const stored = { x: steps.x_m[i], y: steps.y_m[i], z: steps.z_m[i], yaw: steps.yaw_rad[i], tilt };
+    if (time - steps.begin_s[i] >= moving(i) || track.t_s.length === 0) return stored;
+    const j = lastAtOrBefore(track.t_s, time);
+    if (track.t_s[j] > time)
+      return { x: data.start[0], y: data.start[1], z: data.start[2], yaw: data.start[3], tilt };
+    if (j + 1 >= track.t_s.length) return stored;
+    const share = Math.min(1, (time - track.t_s[j]) / Math.max(1e-9, track.t_s[j + 1] - track.t_s[j]));
+    const mix = (list) => list[j] + share * (list[j + 1] - list[j]);
+    let turn = track.yaw_rad[j + 1] - track.yaw_rad[j];
+    turn -= 2 * Math.PI * Math.round(turn / (2 * Math.PI));
+    return {
+      x: mix(track.x_m),
+      y: mix(track.y_m),
+      z: mix(track.z_m),
+      yaw: track.yaw_rad[j] + share * turn,
+      tilt,
+    };
+  }
+
+  /** SCS of the last finished timestep at `time`, null before. */
+  const scs = (time) => {
+    const i = time >= data.duration_s ? count - 1 : stepAt(time) - 1;
+    return i < 0 ? null : steps.scs[i];
+  };
+
+  /** The flown path as [{x, y, z, step}], through the positions after each timestep. */
+  const path = () => [
+    { x: data.start[0], y: data.start[1], z: data.start[2], step: -1 },
+    ...steps.k.map((_, i) => ({ x: steps.x_m[i], y: steps.y_m[i], z: steps.z_m[i], step: i })),
+  ];
+
+  return { data, steps, count, stepAt, phase, pose, scs, path, moving };
+}

@@ -1,0 +1,164 @@
+// What the agents thought in the present timestep, and what came of it.
+import { scaleLinear } from "d3-scale";
+import { el, svg } from "../lib/dom.js";
+import { number } from "../lib/format.js";
+import { shareColour } from "../lib/palette.js";
+import { EXECUTION_LABELS } from "./mission.js";
+
+export function decisionPanel(mission) {
+  const now = el("div", { class: "now" });
+  const stage1 = el("div", { class: "stage" });
+  const stage2 = el("div", { class: "stage" });
+  const node = el("div", { class: "panel" }, now, el("div", { class: "stages" }, stage1, stage2));
+  let shown = -1;
+  return {
+    node,
+    update(time) {
+      const pose = mission.pose(time);
+      const i = mission.stepAt(time);
+      now.replaceChildren(...nowText(mission, time, pose, i));
+      node.dataset.x = pose.x;
+      node.dataset.y = pose.y;
+      node.dataset.z = pose.z;
+      node.dataset.step = i + 1;
+      if (i === shown) return;
+      shown = i;
+      stage1.replaceChildren(...stageOne(mission, i));
+      stage2.replaceChildren(...stageTwo(mission, i));
+    },
+  };
+}
+
+const value = (label, text) => el("span", { class: "value" }, el("small", {}, label), el("b", {}, text));
+
+function nowText(mission, time, pose, i) {
+  const { steps, data } = mission;
+  const scs = mission.scs(time);
+  return [
+    value("timestep", `${i + 1} of ${mission.count}`),
+    value("now", mission.phase(time)),
+    value("SCS", scs === null ? "–" : `${number(100 * scs, 1)} %`),
+    value("threshold", `${number(100 * data.eta_min, 0)} %`),
+    value("battery", `${number((100 * steps.battery_j[i]) / data.battery_j, 1)} %`),
+    value("rate", `${number(steps.rate_bps[i] / 1e6, 1)} Mbit/s`),
+    value("at", `${number(pose.x, 1)}, ${number(pose.y, 1)}, ${number(pose.z, 1)} m`),
+  ];
+}
+
+function stageOne(mission, i) {
+  const { steps } = mission;
+  const decision = mission.data.decisions[i];
+  const head = el("h3", {}, "Stage 1 · the remote controller moves the robot");
+  if (!decision) return [head, el("p", { class: "key" }, mission.data.decisions_note ?? "")];
+  const moved = Math.hypot(steps.command_dx_m[i], steps.command_dy_m[i], steps.command_dz_m[i]);
+  const expected = steps.rc_predicted_reward[i];
+  return [
+    head,
+    el(
+      "p",
+      {},
+      el("b", {}, decision.rule),
+      `: ${number(moved, 1)} m; ${decision.why}; ε ${number(steps.epsilon[i], 3)}`,
+    ),
+    decision.candidates.length > 0
+      ? rose(mission, i, decision)
+      : el("p", { class: "key" }, "No candidates: this motion was not chosen by predicted reward."),
+    el(
+      "p",
+      { class: "key" },
+      decision.candidates.length > 0 && `${decision.drawn} candidates, ${decision.admitted} admitted; `,
+      expected !== null && `expected ${number(expected, 3)}, `,
+      `came out ${number(steps.reward[i], 3)}${steps.halted[i] ? "; halted by an obstacle" : ""}`,
+    ),
+  ];
+}
+
+/** Candidates from above, coloured by predicted reward; the one that was flown is thick. */
+function rose(mission, i, { candidates }) {
+  const { steps } = mission;
+  const chosen = [steps.command_dx_m[i], steps.command_dy_m[i]];
+  const reach = Math.max(1, ...candidates.map(([dx, dy]) => Math.hypot(dx, dy)), Math.hypot(...chosen));
+  const size = 170;
+  const at = scaleLinear([-reach, reach], [8, size - 8]);
+  const rewards = candidates.map((c) => c[3]);
+  const low = Math.min(...rewards),
+    span = Math.max(1e-9, Math.max(...rewards) - low);
+  const lines = [...candidates].reverse().map(([dx, dy, , reward]) =>
+    svg("line", {
+      x1: at(0),
+      y1: at(0),
+      x2: at(dx),
+      y2: size - at(dy),
+      stroke: shareColour((reward - low) / span).fill,
+    }),
+  );
+  return el(
+    "div",
+    { class: "rose" },
+    svg(
+      "svg",
+      {
+        viewBox: `0 0 ${size} ${size}`,
+        width: size,
+        height: size,
+        role: "img",
+        "aria-label": `${candidates.length} candidate motions seen from above; predicted rewards ${number(low, 3)} to ${number(low + span, 3)}`,
+      },
+      svg("circle", { cx: size / 2, cy: size / 2, r: size / 2 - 8, class: "ring" }),
+      lines,
+      svg("line", { class: "chosen", x1: at(0), y1: at(0), x2: at(chosen[0]), y2: size - at(chosen[1]) }),
+      svg("circle", { class: "tip", cx: at(chosen[0]), cy: size - at(chosen[1]), r: 4 }),
+    ),
+    el(
+      "p",
+      { class: "key" },
+      "predicted reward",
+      el("span", {
+        class: "ramp-colours",
+        style: `background:linear-gradient(90deg,${[0, 0.25, 0.5, 0.75, 1].map((s) => shareColour(s).fill).join(",")})`,
+      }),
+      `${number(low, 3)} to ${number(low + span, 3)}; north is up`,
+    ),
+  );
+}
+
+function stageTwo(mission, i) {
+  const { steps, data } = mission;
+  const decision = data.decisions[i];
+  const done = EXECUTION_LABELS[steps.execution[i]];
+  const rewards = decision?.robot_rewards ?? [];
+  const known = rewards.filter((reward) => reward !== null);
+  const low = Math.min(0, ...known),
+    high = Math.max(1e-9, ...known);
+  const width = scaleLinear([low, high], [2, 100]);
+  return [
+    el("h3", {}, "Stage 2 · the robot looks"),
+    el("p", {}, el("b", {}, done), steps.execution_random[i] ? ", at random" : ""),
+    known.length > 0 &&
+      el(
+        "div",
+        { class: "predictions" },
+        rewards.map((reward, e) =>
+          reward === null
+            ? null
+            : el(
+                "div",
+                { class: e === steps.execution[i] ? "prediction taken" : "prediction" },
+                el("span", {}, EXECUTION_LABELS[e]),
+                el(
+                  "span",
+                  { class: "track" },
+                  el("span", { class: "fill", style: `width:${width(reward)}%` }),
+                ),
+                el("span", {}, number(reward, 3)),
+              ),
+        ),
+      ),
+    decision && el("pre", {}, decision.execution_text.trimEnd()),
+    el(
+      "p",
+      { class: "key" },
+      `33 frames: mean ${number(steps.confidence_mean[i], 3)}, sd ${number(steps.confidence_sd[i], 3)}, SCS ${number(steps.scs[i], 3)}; fire ${steps.fire_in_view[i] ? "" : "not "}in view; ${number(steps.total_j[i], 0)} J`,
+    ),
+  ].filter(Boolean);
+}

@@ -1,0 +1,109 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { makeClock } from "../src/viewer/clock.js";
+import { makeMission } from "../src/viewer/mission.js";
+import { energySoFar } from "../src/viewer/timelines.js";
+
+// Two timesteps of 10 s: 4 s of flight, 3 of sensing, 3 of computing; then 4 of flight, 3 of sensing, 3 of transmitting.
+const zero = [0, 0];
+const data = {
+  duration_s: 20,
+  start: [0, 0, 50, 3],
+  track: {
+    t_s: [1, 3, 11, 13],
+    x_m: [0, 10, 10, 30],
+    y_m: zero.concat(zero),
+    z_m: [50, 50, 50, 60],
+    yaw_rad: [3, -3, -3, -3],
+  },
+  steps: {
+    k: [1, 2],
+    begin_s: [0, 10],
+    duration_s: [10, 10],
+    horizontal_s: [4, 4],
+    ascent_s: zero,
+    descent_s: zero,
+    turning_s: zero,
+    sensing_s: [3, 3],
+    computing_s: [3, 0],
+    transmitting_s: [0, 3],
+    x_m: [11, 31],
+    y_m: zero,
+    z_m: [50, 60],
+    yaw_rad: [-3, -3],
+    tilt_rad: [0.1, 0.2],
+    scs: [0.2, 0.8],
+    horizontal_j: [1000, 2000],
+    ascent_j: zero,
+    descent_j: zero,
+    hover_turning_j: zero,
+    hover_sensing_j: [500, 500],
+    hover_computing_j: zero,
+    hover_transmitting_j: zero,
+    sensing_j: [10, 10],
+    computation_j: [20, 0],
+    transmission_j: [0, 30],
+  },
+};
+const mission = makeMission(data);
+
+test("parts of a timestep follow one another", () => {
+  assert.deepEqual([1, 5, 8, 11, 15, 18, 20].map(mission.phase), [
+    "flying",
+    "sensing",
+    "computing",
+    "flying",
+    "sensing",
+    "transmitting",
+    "ended",
+  ]);
+  assert.deepEqual([0, 9.99, 10, 25].map(mission.stepAt), [0, 0, 1, 1]);
+});
+
+test("the robot flies along its track and stands where the record has it", () => {
+  assert.deepEqual(mission.pose(0), { x: 0, y: 0, z: 50, yaw: 3, tilt: 0.1 });
+  assert.equal(mission.pose(2).x, 5);
+  assert.deepEqual(mission.pose(6), { x: 11, y: 0, z: 50, yaw: -3, tilt: 0.1 });
+  assert.deepEqual(mission.pose(20), { x: 31, y: 0, z: 60, yaw: -3, tilt: 0.2 });
+});
+
+test("it turns the short way", () => {
+  const { yaw } = mission.pose(2);
+  assert.ok(Math.abs(yaw - Math.PI) < 0.01, `${yaw}`);
+});
+
+test("a score is known once its timestep has ended", () => {
+  assert.deepEqual([0, 9.9, 10, 19.9, 20].map(mission.scs), [null, null, 0.2, 0.2, 0.8]);
+});
+
+test("energy adds up by part", () => {
+  const sums = energySoFar(data.steps);
+  assert.deepEqual(
+    sums.map((parts) => Math.round(1000 * parts.reduce((a, b) => a + b, 0))),
+    [1530, 4070],
+  );
+});
+
+test("the clock plays at its speed, ends, and begins again", () => {
+  let now = 0;
+  const frames = [];
+  const clock = makeClock(30, { now: () => now, frame: (tick) => frames.push(tick) });
+  const seen = [];
+  clock.listen((time, playing) => seen.push([time, playing]));
+  clock.setSpeed(10);
+  clock.toggle();
+  now = 1000;
+  frames.shift()();
+  now = 4000;
+  frames.shift()();
+  assert.deepEqual(seen, [
+    [0, true],
+    [10, true],
+    [30, false],
+  ]);
+  assert.equal(frames.length, 0);
+  clock.toggle();
+  assert.deepEqual(seen.at(-1), [0, true]);
+  clock.set(99);
+  assert.equal(clock.time(), 30);
+});

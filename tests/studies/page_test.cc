@@ -1,0 +1,143 @@
+// The data of the interactive page: filters, counts, sentences.
+#include <gtest/gtest.h>
+
+#include "studies/report/page_answer.h"
+#include "studies/report/page_slices.h"
+#include "studies/report/report.h"
+#include "studies/report/web_page.h"
+#include "tests/studies/five_missions.h"
+
+namespace ed3r {
+namespace {
+
+// Sites 3 (missions 1 and 3, known) and 8.
+ArmData TwoSites() {
+  ArmData arm = FiveMissions();
+  for (const std::size_t i : {0u, 2u}) arm.missions[i].site = 3;
+  for (const std::size_t i : {1u, 3u, 4u}) arm.missions[i].site = 8;
+  return arm;
+}
+
+TEST(PageSlicesTest, EveryFilterIsComputedByTheTablesCode) {
+  const std::vector<ArmData> arms = {TwoSites()};
+  const std::vector<ArmMetrics> metrics = {ComputeMetrics(arms[0])};
+  const auto slices = SlicesJson(arms, metrics);
+  EXPECT_EQ(slices.size(), 5u * 4u);  // all, known, unseen, 3, 8; every outcome and each
+  const auto value = [&](const char* slice, const char* metric) {
+    return slices.at(slice).at(0).at(1 + 3 * MetricIndex(metric));
+  };
+  EXPECT_EQ(slices.at("all|all").at(0).at(0), 5);
+  EXPECT_EQ(value("all|all", "total_energy_kj"), metrics[0]["total_energy_kj"].value);
+  EXPECT_EQ(slices.at("3|all").at(0).at(0), 2);
+  EXPECT_EQ(value("3|all", "msr_pct"), 50);
+  EXPECT_EQ(value("known|all", "total_energy_kj"), 9.8);
+  EXPECT_EQ(value("8|2", "total_energy_kj"), 139.4);
+  EXPECT_EQ(value("all|1", "fp_pct"), 100);
+  EXPECT_TRUE(slices.at("3|2").at(0).is_null());
+  EXPECT_TRUE(value("3|all", "lf_accuracy_pct").is_null()) << "relative to the worst of the whole arm";
+  EXPECT_FALSE(value("all|all", "lf_accuracy_pct").is_null());
+}
+
+TEST(PageSlicesTest, ManySitesComeWithoutOutcomes) {
+  ArmData arm = FiveMissions();
+  const MissionRecord mission = arm.missions[0];
+  arm.missions.assign(kMostSites + 1, mission);
+  for (std::size_t i = 0; i < arm.missions.size(); ++i) arm.missions[i].site = static_cast<std::int64_t>(i);
+  const auto slices = SlicesJson({&arm, 1}, std::vector<ArmMetrics>{ComputeMetrics(arm)});
+  EXPECT_TRUE(slices.contains("40|all"));
+  EXPECT_FALSE(slices.contains("40|0"));
+  EXPECT_TRUE(slices.contains("all|0"));
+}
+
+TEST(PageSlicesTest, HistogramsCountEveryMissionThatHasTheValue) {
+  const std::vector<ArmData> arms = {TwoSites()};
+  const auto histograms = HistogramsJson(arms);
+  std::vector<int> missions(histograms.at("scales").size());
+  for (const auto& cell : histograms.at("cells"))
+    for (std::size_t i = 5; i < cell.size(); ++i) missions[cell[3].get<std::size_t>()] += cell[i].get<int>();
+  EXPECT_EQ(missions, (std::vector<int>{5, 5, 4})) << "the one without a reliable look has no confidence";
+  const auto& energy = histograms.at("scales").at(0);
+  EXPECT_EQ(energy.at("from"), 0);
+  EXPECT_NEAR(energy.at("step").get<double>() * energy.at("bins").get<int>(), 140, 1e-9);
+}
+
+TEST(PageSlicesTest, PointsAreThinnedByNumber) {
+  ArmData arm = FiveMissions();
+  std::vector<std::vector<int>> numbers = {{0, 1, 2, 2 * kMostPoints, 2 * kMostPoints + 1}};
+  const auto points = PointsJson({&arm, 1}, numbers).at(0);
+  EXPECT_EQ(points.at("every"), 3);
+  EXPECT_EQ(points.at("number"), (std::vector<int>{0, 2 * kMostPoints}));
+  EXPECT_EQ(points.at("energy_kj").at(0), 7.6);
+  EXPECT_EQ(points.at("energy_kj").at(1), 139.4);
+}
+
+TEST(PageSlicesTest, FailuresAreListedByCauseWithTheirNumbers) {
+  ArmData arm = FiveMissions();
+  const std::vector<std::vector<int>> numbers = {{0, 1, 5, 7, 9}};
+  const auto groups = FailuresJson({&arm, 1}, numbers);
+  ASSERT_EQ(groups.size(), 2u);
+  int found = 0;
+  for (const auto& group : groups) {
+    EXPECT_EQ(group.at("count"), 1);
+    if (group.at("outcome") == 1) found += group.at("missions").at(0).at(0) == 5;
+    if (group.at("outcome") == 2) found += group.at("missions").at(0).at(0) == 7;
+  }
+  EXPECT_EQ(found, 2);
+}
+
+// Nine arms of 10,000 missions at 14 sites: what grows with missions is bounded.
+TEST(PageSlicesTest, TheDataStaySmallForManyMissions) {
+  constexpr int kMissions = 10000, kArms = 9, kSites = 14;
+  const ArmData five = FiveMissions();
+  ArmData arm{.stage = "online", .name = "rbs"};
+  std::vector<int> numbers;
+  for (int i = 0; i < kMissions; ++i) {
+    MissionRecord mission = five.missions[static_cast<std::size_t>(i) % 5];
+    mission.site = i % kSites;
+    mission.site_known = mission.site < 6;
+    mission.duration_s += i % 971;
+    arm.missions.push_back(mission);
+    numbers.push_back(i);
+  }
+  const std::vector<ArmData> arms(kArms, arm);
+  const std::vector<ArmMetrics> metrics(kArms, ComputeMetrics(arm));
+  const std::vector<std::vector<int>> all_numbers(kArms, numbers);
+  const std::size_t bytes = SlicesJson(arms, metrics).dump().size() + HistogramsJson(arms).dump().size() +
+                            PointsJson(arms, all_numbers).dump().size() +
+                            FailuresJson(arms, all_numbers).dump().size();
+  EXPECT_LT(bytes, 2'500'000u);
+}
+
+std::vector<std::string> Answer(std::vector<ArmData> arms, std::vector<bool> warmups) {
+  return AnswerSentences(MakeReport({.name = "x", .arms = std::move(arms)}), warmups);
+}
+
+TEST(PageAnswerTest, TellsTheStudiedArmBesideItsRival) {
+  ArmData rbs = FiveMissions();
+  rbs.name = "rbs";
+  rbs.missions[0].outcome = static_cast<std::int64_t>(Outcome::kFalsePositive);
+  const auto sentences = Answer({FiveMissions(), rbs}, {false, false});
+  ASSERT_GE(sentences.size(), 2u);
+  EXPECT_TRUE(sentences[0].starts_with("ED³R-75 finds the fire in 60.0 % ("));
+  EXPECT_TRUE(sentences[1].starts_with("RBS finds the fire in 40.0 % ("));
+  EXPECT_NE(sentences[1].find("ED³R-75 has 20.0 points more success for 0 % more energy"), std::string::npos)
+      << sentences[1];
+  EXPECT_NE(sentences[1].find("both pairs of 95 % intervals overlap"), std::string::npos) << sentences[1];
+}
+
+TEST(PageAnswerTest, WarmUpsAreNoAnswer) {
+  EXPECT_TRUE(Answer({FiveMissions()}, {true}).empty());
+  EXPECT_TRUE(Answer({}, {}).empty());
+}
+
+TEST(WebPageTest, NoTextEndsTheElementThatHoldsIt) {
+  const nlohmann::ordered_json data = {{"name", "</script><script>x"}};
+  const std::string page = SelfContainedPage("<b>&", {"program", "style"}, data, "plain");
+  EXPECT_NE(page.find("<title>&lt;b&gt;&amp;</title>"), std::string::npos);
+  EXPECT_NE(page.find("\\u003c/script>\\u003cscript>x"), std::string::npos);
+  EXPECT_NE(page.find("<noscript>plain</noscript>"), std::string::npos);
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ed3r
