@@ -22,15 +22,14 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 from calibration import flights, record, waves  # noqa: E402
-from calibration.evidence import equivalents  # noqa: E402
 
 FOLDER = flights.ROOT / "sweeps/calibration"
 # What flies: points, missions each, warm-up missions each, and what points: new ones (far around the best so far, or close; or
-# where most quantities are expected to be equivalent), or once more the nearest so far, or those of which most is equivalent.
+# where most quantities are expected to be equivalent), or once more the nearest so far.
 # Every wave has seeds of its own; waves of points that fly again judge, on more missions.
 WAVES = ((140, 112, 8, "wide"), (100, 168, 8, "wide"), (60, 336, 12, "wide"), (28, 840, 16, "again"), (40, 336, 12, "close"),
-         (26, 560, 12, "again"), (24, 560, 12, "equivalent"), (8, 2000, 16, "again equivalent"))
-JUDGING = (6, 8)
+         (26, 560, 12, "again"), (24, 560, 12, "equivalent"))
+JUDGING = (6,)  # of these waves worlds are kept, and of the last of them the default
 SEED = 20261128
 STEPS = ("waves", "freeze", "check", "predict")
 CHECKED_POINTS = 3  # of each wave
@@ -57,28 +56,20 @@ class Search:
                   f"{row['second_implausibility']:.2f}; {row['energy_kj']:.1f} kJ, MSR {row['msr_pct']:.1f}, WER "
                   f"{row['wer_pct']:.1f}, P85 {row['p85_energy_kj']:.0f} kJ", flush=True)
 
-    def surest(self):
-        """A row of each point: as its most missions have it."""
+    def nearest(self, count):
+        """Rows of the points that came nearest, each point once: as its most missions have it."""
         surest = {}
         for row in record.flown(self.rows):
             key = tuple(record.point_of(row).values())
             if key not in surest or row["missions"] >= surest[key]["missions"]:
                 surest[key] = row
-        return surest.values()
-
-    def nearest(self, count):
-        return sorted(self.surest(), key=lambda row: row["implausibility"])[:count]
-
-    def most_equivalent(self, count):
-        return sorted(self.surest(), key=lambda row: (-len(equivalents(row)), row["implausibility"]))[:count]
+        return sorted(surest.values(), key=lambda row: row["implausibility"])[:count]
 
     def points_of_wave(self, number):
         """What the waves before it choose."""
         count, _, _, kind = WAVES[number - 1]
         if kind == "again":
             return [record.point_of(row) for row in self.nearest(count)]
-        if kind == "again equivalent":
-            return [record.point_of(row) for row in self.most_equivalent(count)]
         if kind == "equivalent":
             from calibration.equivalence import equivalent_points
             return equivalent_points(self.rows, count, SEED + number)

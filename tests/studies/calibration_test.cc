@@ -72,19 +72,18 @@ struct Record {
   }
 };
 
-// One row is marked, of the wave that judges (the last), and it is the first of the worlds that are kept.
+// One row is marked, of the wave that judges (JUDGING in scripts/calibrate.py), and it is the first of the worlds that are kept.
 TEST(CalibrationTest, TheFrozenPointIsOfTheRecord) {
   const Record record{ParseCsv(Content(kFolder + "calibration/record.csv"), "record.csv")};
   const Record matched{ParseCsv(Content(kFolder + "calibration/matched.csv"), "matched.csv")};
   const std::size_t wave = record.Column("wave"), frozen = record.Column("frozen");
-  int last = 0, marked = 0;
-  for (std::size_t i = 1; i < record.rows.size(); ++i)
-    last = std::max(last, std::stoi(record.rows[i].at(wave)));
+  constexpr int kJudging = 6;
+  int marked = 0;
   for (std::size_t i = 1; i < record.rows.size(); ++i) {
     const CsvRow& row = record.rows[i];
     if (row.at(frozen) != "yes") continue;
     ++marked;
-    EXPECT_EQ(std::stoi(row.at(wave)), last);
+    EXPECT_EQ(std::stoi(row.at(wave)), kJudging);
     for (const char* column : {"half_signal", "site_distance_m", "energy_kj", "implausibility"})
       EXPECT_EQ(row.at(record.Column(column)), matched.rows.at(1).at(matched.Column(column))) << column;
   }
