@@ -35,7 +35,7 @@ std::shared_ptr<DirOptions> AddDirOptions(CLI::App& parser) {
 }
 
 // About a second's work. Beyond it a look at the status must not take long.
-constexpr std::uintmax_t kCheckedBytes = 200'000'000;
+constexpr std::uintmax_t kCheckedBytes = 50'000'000;
 
 struct Check {
   bool done = false;

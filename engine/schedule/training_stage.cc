@@ -143,12 +143,21 @@ std::unique_ptr<NetworkShelf> NetworkShelf::From(const FlownNetworks& flown, con
 }
 
 void NetworkShelf::Take(NetworkShelf&& other) {
-  for (auto& [arm, pairs] : other.by_arm_) by_arm_[arm] = std::move(pairs);
-  for (ShelvedNetwork& network : other.all_)
-    if (std::none_of(all_.begin(), all_.end(), [&](const ShelvedNetwork& known) {
-          return known.name == network.name && known.file == network.file;
-        }))
-      all_.push_back(std::move(network));
+  // A network that both have is one: the other's copy of it goes.
+  std::map<const Model*, std::shared_ptr<const Model>> here;
+  for (ShelvedNetwork& network : other.all_) {
+    const auto known = std::find_if(all_.begin(), all_.end(), [&](const ShelvedNetwork& mine) {
+      return mine.name == network.name && mine.file == network.file;
+    });
+    here[network.model.get()] = known == all_.end() ? network.model : known->model;
+    if (known == all_.end()) all_.push_back(std::move(network));
+  }
+  for (auto& [arm, pairs] : other.by_arm_) {
+    for (Pair& pair : pairs)
+      for (std::shared_ptr<const Model>* model : {&pair.rc, &pair.robot})
+        if (*model) *model = here.at(model->get());
+    by_arm_[arm] = std::move(pairs);
+  }
 }
 
 bool NeedsNetworks(const SweepPlan& plan) {

@@ -43,7 +43,7 @@ TEST(TrainingTest, ALaterWarmUpIsNotLearnedFromBeforeItIsFlown) {
   for (const auto& arm : status["arms"]) EXPECT_EQ(arm["done"], arm["planned"]);
   EXPECT_EQ(Ed3r(fmt::format("replay {} second/ecd2r/3 --cache {}", run, cache)).status, 0);
   EXPECT_EQ(Ed3r(fmt::format("replay {} second/ablation-1/3 --cache {}", run, cache)).status, 0);
-  EXPECT_EQ(Ed3r(fmt::format("replay {} first/first/3 --cache {}", run, cache)).status, 0);
+  EXPECT_EQ(Ed3r(fmt::format("replay {} first/ed3r-75/3 --cache {}", run, cache)).status, 0);
 
   // Continued by another process after the first stage: the same networks, the same missions.
   const std::string parts = fmt::format("run {} --quiet --out {} --cache {}", sweep, (scratch / "c").string(),
