@@ -8,6 +8,7 @@
 
 #include "engine/app/commands.h"
 #include "engine/app/report_missions.h"
+#include "engine/app/status_watch.h"
 #include "engine/core/file.h"
 #include "engine/store/digest.h"
 #include "engine/store/merge.h"
@@ -66,10 +67,21 @@ Command AddStatus(CLI::App& program) {
   CLI::App* parser =
       program.add_subcommand("status", "Done, failed and missing missions of a run, while it runs or after");
   const auto options = AddDirOptions(*parser);
-  return {parser, [options] {
+  auto watch = std::make_shared<WatchOptions>();
+  parser->add_flag("--watch", watch->terminal,
+                   "Shows rates, the expected end and intervals until nothing is missing");
+  parser
+      ->add_option("--html", watch->html,
+                   "Keeps writing a page that shows itself anew, until nothing is missing")
+      ->check(NotEmpty());
+  parser->add_option("--every", watch->seconds, "Seconds between two looks of --watch and --html; default 5")
+      ->check(CLI::Range(1, 3600));
+  return {parser, [options, watch] {
+            watch->dir = options->dir;
+            if (watch->terminal || !watch->html.empty()) return WatchStatus(*watch);
             ResultReader reader(options->dir);
             options->json ? PrintStatusJson(reader) : PrintStatus(reader);
-            return kDone;
+            return static_cast<int>(kDone);
           }};
 }
 

@@ -37,7 +37,9 @@ async function open(options = {}, fragment = "") {
     if (!/^(data|blob):/.test(request.url()) && request.url().split("#")[0] !== address)
       page.faults.push(`asked for ${request.url()}`);
   });
-  await page.goto(address + fragment);
+  // Software draws slowly where cores are busy.
+  page.setDefaultTimeout(120_000);
+  await page.goto(address + fragment, { timeout: 120_000 });
   await page.waitForSelector("html[data-ready]");
   return page;
 }
