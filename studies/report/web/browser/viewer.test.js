@@ -65,7 +65,8 @@ const place = (page) => page.$eval(".panel", (panel) => ({ ...panel.dataset }));
 
 for (const fragment of ["", "#map"])
   test(`the scrub bar moves the robot to the stored pose${fragment && ", seen from above"}`, async () => {
-    const page = await open({}, fragment);
+    // Small, as software draws it here.
+    const page = await open({ viewport: { width: 700, height: 480 } }, fragment);
     assert.equal(
       await page.$$eval(".view canvas", (list) => list.length > 0),
       fragment === "",
