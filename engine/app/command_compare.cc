@@ -12,8 +12,10 @@
 #include "engine/core/file.h"
 #include "engine/store/reader.h"
 #include "studies/metrics/number_text.h"
+#include "studies/report/compare_page.h"
 #include "studies/report/load.h"
 #include "studies/report/provenance.h"
+#include "studies/report/web_page.h"
 #include "studies/variants/variants.h"
 
 namespace ed3r {
@@ -64,10 +66,26 @@ nlohmann::ordered_json ManifestOf(const std::vector<std::string>& dirs,
   return runs;
 }
 
+void WritePage(const std::vector<ComparedRun>& runs, const VariantStudy& study, const Options& options) {
+  const FoundBundle found = FindWebBundle("report");
+  if (!found.bundle) {
+    fmt::print(stderr, "note: {}\n", found.why_not);
+    return;
+  }
+  const std::string command =
+      fmt::format("ed3r compare {} --out {}", fmt::join(options.dirs, " "), options.out);
+  WriteFile(
+      fs::path(options.out) / "index.html",
+      SelfContainedPage(fmt::format("{} compared", fmt::join(study.variants, ", ")), *found.bundle,
+                        ComparePageData(runs, study, command),
+                        "<p>This page is a program: it needs scripts. The same is in compare.txt.</p>"));
+}
+
 int Compare(const Options& options) {
   if (options.dirs.size() < 2)
     throw UserError(fmt::format("compare: {} is one run; at least two are needed", options.dirs.front()));
   std::vector<ArmData> arms;
+  std::vector<ComparedRun> runs;
   std::vector<std::string> labels;
   std::set<std::uint64_t> seeds;
   for (const std::string& dir : options.dirs) {
@@ -82,6 +100,7 @@ int Compare(const Options& options) {
     if (!VariantsOf(run.arms).empty())
       throw UserError(fmt::format("{}: has variants of its own; 'ed3r report {}' compares them", dir, dir));
     for (ArmData& arm : AsVariant(run.arms, label)) arms.push_back(std::move(arm));
+    runs.push_back({label, dir, run});
   }
   VariantStudy study = CompareVariants(arms);
   study.same_draws = seeds.size() == 1;
@@ -96,6 +115,7 @@ int Compare(const Options& options) {
     WriteFile(out / "differences.csv", DifferenceCsv(study));
     WriteFile(out / "verdicts.csv", VariantVerdictCsv(study));
     WriteFile(out / "manifest.json", ManifestOf(options.dirs, labels).dump(2) + "\n");
+    WritePage(runs, study, options);
   }
   fmt::print("{}", options.json ? JsonOf(study).dump(2) + "\n" : text);
   return kDone;
@@ -112,7 +132,7 @@ Command AddCompare(CLI::App& program) {
   parser->add_option("DIR", options->dirs, "Run directories")->required();
   parser
       ->add_option("--out", options->out,
-                   "Folder for compare.txt, differences.csv, verdicts.csv and manifest.json")
+                   "Folder for index.html, compare.txt, differences.csv, verdicts.csv and manifest.json")
       ->check(NotEmpty());
   parser->add_flag("--json", options->json, "Print JSON");
   parser->footer(

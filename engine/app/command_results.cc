@@ -9,6 +9,7 @@
 #include "engine/app/commands.h"
 #include "engine/app/failure_text.h"
 #include "engine/app/report_missions.h"
+#include "engine/app/status_watch.h"
 #include "engine/app/words.h"
 #include "engine/core/file.h"
 #include "engine/store/digest.h"
@@ -92,11 +93,22 @@ Command AddStatus(CLI::App& program) {
       "status",
       "Done, failed and missing missions of a run, while it runs or after; exit 1 where any is damaged");
   const auto options = AddDirOptions(*parser);
-  return {parser, [options] {
+  auto watch = std::make_shared<WatchOptions>();
+  parser->add_flag("--watch", watch->terminal,
+                   "Shows rates, the expected end and intervals until nothing is missing");
+  parser
+      ->add_option("--html", watch->html,
+                   "Keeps writing a page that shows itself anew, until nothing is missing")
+      ->check(NotEmpty());
+  parser->add_option("--every", watch->seconds, "Seconds between two looks of --watch and --html; default 5")
+      ->check(CLI::Range(1, 3600));
+  return {parser, [options, watch] {
+            watch->dir = options->dir;
+            if (watch->terminal || !watch->html.empty()) return WatchStatus(*watch);
             ResultReader reader(options->dir);
             const Check check = CheckOf(reader);
             options->json ? PrintStatusJson(reader, check) : PrintStatus(reader, check);
-            return check.damage.empty() ? kDone : kFailedInside;
+            return static_cast<int>(check.damage.empty() ? kDone : kFailedInside);
           }};
 }
 

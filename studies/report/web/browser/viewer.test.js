@@ -37,7 +37,9 @@ async function open(options = {}, fragment = "") {
     if (!/^(data|blob):/.test(request.url()) && request.url().split("#")[0] !== address)
       page.faults.push(`asked for ${request.url()}`);
   });
-  await page.goto(address + fragment);
+  // Software draws slowly where cores are busy.
+  page.setDefaultTimeout(120_000);
+  await page.goto(address + fragment, { timeout: 120_000 });
   await page.waitForSelector("html[data-ready]");
   return page;
 }
@@ -63,7 +65,8 @@ const place = (page) => page.$eval(".panel", (panel) => ({ ...panel.dataset }));
 
 for (const fragment of ["", "#map"])
   test(`the scrub bar moves the robot to the stored pose${fragment && ", seen from above"}`, async () => {
-    const page = await open({}, fragment);
+    // Small, as software draws it here.
+    const page = await open({ viewport: { width: 700, height: 480 } }, fragment);
     assert.equal(
       await page.$$eval(".view canvas", (list) => list.length > 0),
       fragment === "",

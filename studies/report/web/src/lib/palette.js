@@ -23,11 +23,18 @@ export function armColours(names) {
   return names.map((name) => ARMS[name] ?? ARMS[OTHERS[taken++ % OTHERS.length]]);
 }
 
-/** Style rules that give each arm its variable. */
-export const armRules = (names) =>
-  `:root{${armColours(names)
-    .map(([light, dark], i) => `--arm-${i}:light-dark(${light},${dark})`)
-    .join(";")}}`;
+/** Style rules that give each arm its variable; an arm of the same name in a further run is paler. */
+export function armRules(names) {
+  const seen = new Map();
+  const rules = armColours(names).map(([light, dark], i) => {
+    const before = seen.get(names[i]) ?? 0;
+    seen.set(names[i], before + 1);
+    const colour = `light-dark(${light},${dark})`;
+    const share = Math.max(35, 100 - 35 * before);
+    return `--arm-${i}:${before ? `color-mix(in oklab,${colour} ${share}%,light-dark(#9aa3a9,#5d676e))` : colour}`;
+  });
+  return `:root{${rules.join(";")}}`;
+}
 
 export const OUTCOMES = [
   { id: "0", label: "success", metric: "msr_pct", variable: "--success" },

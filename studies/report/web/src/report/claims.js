@@ -66,6 +66,7 @@ export function claims(model, store) {
     "section",
     { id: "claims" },
     el("h2", {}, "The paper's claims"),
+    model.data.compared && el("p", { class: "note" }, `Judged by ${model.data.compared[0]} alone.`),
     el("div", { class: "chips" }, chips),
     el("div", { class: "choices" }, about.node, sure.node),
     shown,

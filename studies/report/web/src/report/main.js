@@ -54,7 +54,7 @@ const links = [
   pictures.length > 0 && ["pictures", "Pictures"],
   pictures.length > 0 && ["sites", "Sites"],
   ...lists.map((view) => [view.node.id, view.title]),
-  ["tables", "Tables"],
+  ["tables", model.data.compared ? "Differences" : "Tables"],
   ["run", "What was run"],
 ].filter(Boolean);
 const nav = el(

@@ -60,7 +60,7 @@ export function makeModel(data) {
   }
 
   const command = (arm, number) =>
-    `ed3r replay ${quoted(data.run.dir)} ${quoted(`${arm.stored_name}/${number}`)}`;
+    `ed3r replay ${quoted(arm.dir ?? data.run.dir)} ${quoted(`${arm.stored_name}/${number}`)}`;
 
   return {
     data,

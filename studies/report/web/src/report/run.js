@@ -12,6 +12,8 @@ export function whatWasRun(model) {
     "section",
     { id: "run" },
     el("h2", {}, "What was run"),
+    model.data.compared &&
+      el("p", { class: "note" }, `Of ${model.data.compared[0]}; manifest.json tells the others.`),
     el(
       "dl",
       {},

@@ -5,6 +5,7 @@ import { sortedTable } from "../lib/table.js";
 
 export function tables(model) {
   const { data } = model;
+  if (data.compared) return compared(model);
   return el(
     "section",
     { id: "tables" },
@@ -81,6 +82,25 @@ function tableNode(model, table) {
   );
 }
 
+/** Of runs that are compared: their own reports have the tables. */
+const compared = (model) =>
+  el(
+    "section",
+    { id: "tables" },
+    el("h2", {}, "Differences"),
+    variants(model),
+    el(
+      "p",
+      { class: "files" },
+      ["compare.txt", "differences.csv", "verdicts.csv", "manifest.json"].map((file) => [
+        el("a", { href: file }, file),
+        " ",
+      ]),
+      "made by ",
+      el("code", {}, model.data.run.report_command),
+    ),
+  );
+
 function variants(model) {
   const study = model.data.variants;
   if (!study) return null;
@@ -90,7 +110,8 @@ function variants(model) {
     el(
       "p",
       { class: "key" },
-      "Each variant minus the first, paired by scenario, with 95 % intervals; bold where the interval does not hold 0. Everything else on this page is of the first variant.",
+      "Each variant minus the first, paired by scenario, with 95 % intervals; bold where the interval does not hold 0." +
+        (model.data.compared ? "" : " Everything else on this page is of the first variant."),
     ),
     sortedTable(
       [
@@ -109,13 +130,14 @@ function variants(model) {
       study.differences,
       { caption: "What each variant changes" },
     ),
-    el(
-      "p",
-      { class: "files" },
-      el("a", { href: "variants.csv" }, "variants.csv"),
-      " ",
-      el("a", { href: "variant_verdicts.csv" }, "variant_verdicts.csv"),
-    ),
+    !model.data.compared &&
+      el(
+        "p",
+        { class: "files" },
+        el("a", { href: "variants.csv" }, "variants.csv"),
+        " ",
+        el("a", { href: "variant_verdicts.csv" }, "variant_verdicts.csv"),
+      ),
   ];
 }
 

@@ -122,6 +122,12 @@ function rose(mission, i, { candidates }) {
   );
 }
 
+/** Without the predictions where they are drawn. */
+const reasons = (text, drawn) =>
+  (drawn ? text.split("\n").filter((line) => line.trimStart().startsWith(">")) : text.trimEnd().split("\n"))
+    .map((line) => line.replace(/^ {2}/, ""))
+    .join("\n");
+
 function stageTwo(mission, i) {
   const { steps, data } = mission;
   const decision = data.decisions[i];
@@ -154,7 +160,7 @@ function stageTwo(mission, i) {
               ),
         ),
       ),
-    decision && el("pre", {}, decision.execution_text.trimEnd()),
+    decision && el("pre", {}, reasons(decision.execution_text, known.length > 0)),
     el(
       "p",
       { class: "key" },

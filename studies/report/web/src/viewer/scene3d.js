@@ -78,7 +78,16 @@ export function makeScene(world, mission, dark) {
   let mode = "overview",
     time = 0;
 
-  const render = () => renderer.render(scene, camera);
+  // However many things change, a picture is drawn once a frame.
+  let queued = false;
+  const render = () => {
+    if (queued) return;
+    queued = true;
+    requestAnimationFrame(() => {
+      queued = false;
+      renderer.render(scene, camera);
+    });
+  };
   controls.addEventListener("change", render);
 
   function place() {
@@ -231,6 +240,12 @@ function fireAt(world, number) {
     group.add(flame);
     return flame;
   });
+  const beacon = new Mesh(
+    new CylinderGeometry(0.7, 0.7, 90, 6),
+    new MeshBasicMaterial({ color: "#f2601d", transparent: true, opacity: 0.55 }),
+  );
+  beacon.position.y = 45;
+  group.add(beacon, sign("fire", 94));
   const texture = puff();
   const smoke = Array.from({ length: SMOKE_PUFFS }, () => {
     const sprite = new Sprite(
@@ -248,10 +263,34 @@ function fireAt(world, number) {
         toThree(up * shape.lean_m[0], up * shape.lean_m[1], up * shape.total_height_m + 4),
       );
       sprite.scale.setScalar(2.1 * radius);
-      sprite.material.opacity = 0.55 * (1 - up) + 0.08;
+      sprite.material.opacity = 0.75 * (1 - up) + 0.1;
     });
   };
   return { node: group, flicker };
+}
+
+/** A word that stands `up_m` above its place, of the same size on the screen from wherever it is seen. */
+function sign(word, up_m) {
+  const canvas = el("canvas", { width: 256, height: 64 });
+  const pen = canvas.getContext("2d");
+  pen.font = "600 40px system-ui, sans-serif";
+  pen.textAlign = "center";
+  pen.lineWidth = 8;
+  pen.strokeStyle = "rgba(10,14,18,.75)";
+  pen.strokeText(word, 128, 46);
+  pen.fillStyle = "#ffffff";
+  pen.fillText(word, 128, 46);
+  const sprite = new Sprite(
+    new SpriteMaterial({
+      map: new CanvasTexture(canvas),
+      sizeAttenuation: false,
+      depthTest: false,
+      transparent: true,
+    }),
+  );
+  sprite.scale.set(0.16, 0.04, 1);
+  sprite.position.y = up_m;
+  return sprite;
 }
 
 function puff() {
@@ -279,6 +318,11 @@ function stations(world, own) {
     );
     head.position.copy(toThree(station.x_m, station.y_m, station.z_m));
     group.add(mast, head);
+    if (i === own) {
+      const name = sign("remote controller", 0);
+      name.position.copy(toThree(station.x_m, station.y_m, station.z_m + 12));
+      group.add(name);
+    }
   });
   return group;
 }

@@ -82,10 +82,11 @@ export function timelines(mission, clock) {
       top += h + GAP;
     });
     const axis = svg("g", { class: "axis", transform: `translate(0,${top - 6})` });
+    const minutes = scaleLinear([0, clock.end / 60], x.range());
     select(axis).call(
-      axisBottom(x)
+      axisBottom(minutes)
         .ticks(Math.max(3, width / 90))
-        .tickFormat((s) => `${number(s / 60, 1)} min`),
+        .tickFormat((m) => `${m} min`),
     );
     cursor = svg("line", { class: "cursor", y1: 0, y2: height - 22 });
     root.append(axis, cursor);

@@ -1,0 +1,125 @@
+#include "studies/report/compare_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "engine/core/check.h"
+#include "engine/store/reader.h"
+#include "studies/figures/figure_data.h"
+#include "studies/figures/run_source.h"
+#include "studies/report/page_data.h"
+#include "studies/tables/names.h"
+
+namespace ed3r {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// All runs as one: stages bear the label of their run.
+struct Together {
+  std::vector<ArmMetrics> metrics;
+  std::vector<ArmPlan> plans;
+  PageMissions missions;
+  struct Origin {
+    std::string label, dir, stored_name;
+  };
+  std::vector<Origin> origins;  // of the arms
+};
+
+void Add(const ComparedRun& run, Together& together) {
+  Report report;
+  for (const ArmData& arm : run.results.arms) report.told.push_back(ComputeMetrics(arm));
+  PageMissions missions = ReadPageMissions(report, run.results, run.dir);
+  for (std::size_t a = 0; a < report.told.size(); ++a) {
+    together.origins.push_back({run.label, run.dir, report.told[a].stage + '/' + report.told[a].name});
+    report.told[a].stage = missions.arms[a].stage = run.label + '/' + report.told[a].stage;
+  }
+  std::move(report.told.begin(), report.told.end(), std::back_inserter(together.metrics));
+  std::move(missions.arms.begin(), missions.arms.end(), std::back_inserter(together.missions.arms));
+  std::move(missions.numbers.begin(), missions.numbers.end(), std::back_inserter(together.missions.numbers));
+  for (ArmPlan& plan : ReadArmPlans(ResultReader(run.dir).StoredRecipe().plan_text)) {
+    plan.stage = run.label + '/' + plan.stage;
+    together.plans.push_back(std::move(plan));
+  }
+}
+
+// The world of the first run's arms.
+FoundScene SceneOf(const ComparedRun& run) {
+  ResultReader reader(run.dir);
+  for (const ArmPlan& plan : ReadArmPlans(reader.StoredRecipe().plan_text))
+    if (const std::string world = plan.Setting("mission.world"); !world.empty())
+      return FindScene(reader, world);
+  return {nullptr, "the plan names no world"};
+}
+
+std::string Names(const std::vector<ComparedRun>& runs) {
+  std::string names = runs.front().label;
+  for (std::size_t r = 1; r < runs.size(); ++r)
+    names += (r + 1 == runs.size() ? " and " : ", ") + runs[r].label;
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> ComparisonSentences(const VariantStudy& study) {
+  std::vector<std::string> sentences;
+  for (std::size_t v = 1; v < study.variants.size(); ++v) {
+    const std::string& name = study.variants[v];
+    int all = 0, certain = 0;
+    for (const VariantDifference& d : study.differences)
+      if (d.variant == name) ++all, certain += d.Certain();
+    int changed = 0, contradict = 0;
+    for (const VerdictChange& change : study.changes)
+      if (change.variant == name) ++changed, contradict += change.Contradicts();
+    sentences.push_back(fmt::format(
+        "{} against {}: {} of {} differences of arms in energy, success and duration are certain (95 %, {}); "
+        "{} "
+        "verdicts on the paper's claims change, {} of them from one side to the other.",
+        name, study.variants.front(), certain, all,
+        study.same_draws ? "paired by scenario" : "other draws at the same places", changed, contradict));
+  }
+  return sentences;
+}
+
+Json ComparePageData(const std::vector<ComparedRun>& runs, const VariantStudy& study,
+                     const std::string& command) {
+  ED3R_CHECK(runs.size() > 1, "runs to compare");
+  Together together;
+  for (const ComparedRun& run : runs) Add(run, together);
+  const FoundScene found = SceneOf(runs.front());
+  Json figures = MakeFigureData({.name = Names(runs),
+                                 .arms = together.missions.arms,
+                                 .metrics = together.metrics,
+                                 .plans = together.plans,
+                                 .missions = {},
+                                 .scene = found.scene,
+                                 .scene_note = found.why_not,
+                                 .variants = &study});
+  figures["figures"] = Json::array();
+  Report report;
+  report.name = Names(runs);
+  report.told = together.metrics;
+  if (!study.verdicts.empty()) report.claims = study.verdicts.front();
+  const Provenance provenance = ReadProvenance(runs.front().dir);
+  Json data = MakePageData({.report = report,
+                            .provenance = provenance,
+                            .missions = together.missions,
+                            .figures = figures,
+                            .question = "What differs between " + Names(runs) + "?",
+                            .report_command = command,
+                            .figures_note = ""});
+  data["answer"] = ComparisonSentences(study);
+  data["compared"] = study.variants;
+  for (std::size_t a = 0; a < together.origins.size(); ++a) {
+    const Together::Origin& origin = together.origins[a];
+    Json& arm = data["arms"][a];
+    arm["label"] = origin.label + ": " + ArmLabel(together.metrics[a].name);
+    arm["stored_name"] = origin.stored_name;
+    arm["dir"] = origin.dir;
+  }
+  return data;
+}
+
+}  // namespace ed3r

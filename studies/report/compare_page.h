@@ -1,0 +1,26 @@
+// The interactive page of two or more runs: their arms side by side, and what differs from the first, paired.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "studies/report/report.h"
+
+namespace ed3r {
+
+struct ComparedRun {
+  std::string label, dir;
+  RunResults results;  // without variants
+};
+
+// The document of page_data.h. Arms are keyed LABEL/STAGE/NAME; the paper's values stand beside each; claims are judged by the
+// first run; `study` compares the others with it, and its differences are the page's answer. Tables and figures are none: each
+// run's own report has them. Throws UserError as LoadRun.
+nlohmann::ordered_json ComparePageData(const std::vector<ComparedRun>& runs, const VariantStudy& study,
+                                       const std::string& command);
+
+// One sentence on each run after the first: how many differences are certain, how many verdicts change.
+std::vector<std::string> ComparisonSentences(const VariantStudy& study);
+
+}  // namespace ed3r
