@@ -35,28 +35,29 @@ std::set<std::string> Foundations(const SweepPlan& plan, const Stage& stage) {
 
 // What an arm that asks networks learns from: `warmup` is (stage, arm), `trainings` the training stages behind it and
 // before the arm. (-1, -1) when there is none.
-struct Lesson {
+struct WarmupChoice {
   std::pair<int, int> warmup = {-1, -1};
   std::set<std::string> trainings;
 };
 
 // A warm-up counts only where a training stage stands between it and the arm: before that it may not be flown yet.
-Lesson LessonOf(const SweepPlan& plan, const Stage& stage, const Arm& learner, std::string_view source) {
+WarmupChoice ChooseWarmup(const SweepPlan& plan, const Stage& stage, const Arm& learner,
+                          std::string_view source) {
   const std::set<std::string> foundations = Foundations(plan, stage);
   for (std::size_t s = 0; s < plan.stages.size(); ++s) {
     const Stage& flown = plan.stages[s];
     if (flown.kind != StageKind::kFly || !foundations.contains(flown.name)) continue;
-    Lesson lesson;
+    WarmupChoice choice;
     for (const Stage& training : plan.stages)
       if (training.kind == StageKind::kTrain && foundations.contains(training.name) &&
           Foundations(plan, training).contains(flown.name))
-        lesson.trainings.insert(training.name);
-    if (lesson.trainings.empty()) continue;
+        choice.trainings.insert(training.name);
+    if (choice.trainings.empty()) continue;
     for (std::size_t a = 0; a < flown.arms.size(); ++a) {
       if (flown.arms[a].config.mission.strategy != source || flown.arms[a].variant != learner.variant)
         continue;
-      lesson.warmup = {static_cast<int>(s), static_cast<int>(a)};
-      return lesson;
+      choice.warmup = {static_cast<int>(s), static_cast<int>(a)};
+      return choice;
     }
   }
   return {};
@@ -173,7 +174,7 @@ void CheckTraining(const SweepPlan& plan) {
     for (const Arm& arm : stage.arms) {
       const Strategy& strategy = FindStrategy(arm.config.mission.strategy);
       if (stage.kind != StageKind::kFly || strategy.networks.empty()) continue;
-      if (LessonOf(plan, stage, arm, strategy.networks).warmup.first < 0)
+      if (ChooseWarmup(plan, stage, arm, strategy.networks).warmup.first < 0)
         throw UserError(
             fmt::format("{}: stage {}: arm {} asks networks, so the stage must come after a training stage "
                         "('kind: train') that comes "
@@ -243,9 +244,9 @@ void TrainingStage::Collect() {
       const Arm& arm = stage.arms[a];
       const Strategy& strategy = FindStrategy(arm.config.mission.strategy);
       if (stage.kind != StageKind::kFly || strategy.networks.empty()) continue;
-      const Lesson lesson = LessonOf(plan_, stage, arm, strategy.networks);
-      if (!options_.stage.empty() && !lesson.trainings.contains(options_.stage)) continue;
-      const Samples& samples = SamplesFor(lesson.warmup, arm.config.agents);
+      const WarmupChoice choice = ChooseWarmup(plan_, stage, arm, strategy.networks);
+      if (!options_.stage.empty() && !choice.trainings.contains(options_.stage)) continue;
+      const Samples& samples = SamplesFor(choice.warmup, arm.config.agents);
       ArmNeed need{static_cast<int>(s), static_cast<int>(a), {}, {}};
       for (int seed = 0; seed < arm.config.training.seeds; ++seed) {
         need.rc_jobs.push_back(AddJob(kRcNetwork, samples.rc, arm, strategy.networks, seed));
