@@ -16,6 +16,8 @@ bool AddsUp(double expected, double found) {
   return std::abs(expected - found) <= kLedgerTolerance * std::max(std::abs(expected), 1.0);
 }
 
+}  // namespace
+
 double MovementJ(const TimestepRecord& s) {
   return s.horizontal_j + s.ascent_j + s.descent_j + s.hover_turning_j + s.hover_sensing_j +
          s.hover_computing_j + s.hover_transmitting_j;
@@ -25,8 +27,6 @@ double DurationS(const TimestepRecord& s) {
   return s.horizontal_s + s.ascent_s + s.descent_s + s.turning_s + s.sensing_s + s.computing_s +
          s.transmitting_s;
 }
-
-}  // namespace
 
 TimestepRecord OpenStep(std::uint32_t k, const MotionDecision& motion, const FlownMove& move,
                         const ExecutionDecision& execution) {
