@@ -2,7 +2,8 @@
 
 add_library(ed3r_rules INTERFACE)
 # -ffp-contract=off: a compiler that fuses where it likes would make results depend on the build.
-target_compile_options(ed3r_rules INTERFACE -Wall -Wextra -Wpedantic -ffp-contract=off -fno-math-errno)
+target_compile_options(ed3r_rules INTERFACE -Wall -Wextra -Wpedantic -ffp-contract=off -fno-math-errno
+  $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
 target_include_directories(ed3r_rules INTERFACE "${CMAKE_SOURCE_DIR}")
 if(ED3R_WERROR)
   target_compile_options(ed3r_rules INTERFACE -Werror)

@@ -1,7 +1,10 @@
 #include "engine/agents/action_ranges.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+
+#include "engine/core/check.h"
 
 namespace ed3r {
 namespace {
@@ -51,6 +54,20 @@ MotionCommand DrawCommand(const ActionRanges& ranges, const AgentsConfig& agents
   const TiltInterval tilt = TiltCommands(ranges, agents, tilt_rad);
   command.tilt_rad = stream.Uniform(tilt.low_rad, tilt.high_rad);
   return command;
+}
+
+MotionCommand Clamped(const MotionCommand& command, const ActionRanges& ranges, const AgentsConfig& agents,
+                      double tilt_rad) {
+  if (!command.displacement_m.allFinite() || !std::isfinite(command.turn_rad) ||
+      !std::isfinite(command.tilt_rad))
+    throw UserError("a motion command is not finite");
+  MotionCommand inside = command;
+  for (int axis = 0; axis < 3; ++axis)
+    inside.displacement_m[axis] = std::clamp(command.displacement_m[axis], -ranges.axis_m, ranges.axis_m);
+  inside.turn_rad = std::clamp(command.turn_rad, -ranges.yaw_rad, ranges.yaw_rad);
+  const TiltInterval tilt = TiltCommands(ranges, agents, tilt_rad);
+  inside.tilt_rad = std::clamp(command.tilt_rad, tilt.low_rad, tilt.high_rad);
+  return inside;
 }
 
 }  // namespace ed3r

@@ -28,4 +28,8 @@ TiltInterval TiltCommands(const ActionRanges& ranges, const AgentsConfig& agents
 MotionCommand DrawCommand(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad,
                           Stream& stream);
 
+// The command cut to the ranges, value by value. Throws UserError for one that is not finite.
+MotionCommand Clamped(const MotionCommand& command, const ActionRanges& ranges, const AgentsConfig& agents,
+                      double tilt_rad);
+
 }  // namespace ed3r

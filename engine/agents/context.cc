@@ -5,8 +5,7 @@
 
 namespace ed3r {
 
-double EpsilonOfMission(const AgentsConfig& agents, const Strategy& strategy, int mission) {
-  if (strategy.motion == MotionPolicy::kRandom) return 1.0;
+double EpsilonOfMission(const AgentsConfig& agents, int mission) {
   return std::max(agents.epsilon_min, std::pow(agents.epsilon_decay, mission));
 }
 

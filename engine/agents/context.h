@@ -26,7 +26,7 @@ struct AgentContext {
   double epsilon = 1.0;  // of this mission where the Algorithm forces none (R20)
 };
 
-// max(epsilon_min, decay^mission) for network strategies, 1 for those that walk at random (R20).
-double EpsilonOfMission(const AgentsConfig& agents, const Strategy& strategy, int mission);
+// max(epsilon_min, decay^mission) (R20); strategies that walk at random do not ask.
+double EpsilonOfMission(const AgentsConfig& agents, int mission);
 
 }  // namespace ed3r

@@ -22,7 +22,10 @@ enum class MotionRule : std::int64_t {
   kHover = 2,
   kRegionPromising = 3,
   kRegionUnexplored = 4,
-  kRegionNearest = 5
+  kRegionNearest = 5,
+  kOutside = 6,    // by a program that steps the mission
+  kRule = 7,       // by a strategy's rule
+  kCommanded = 8,  // by a network that gives the command itself
 };
 template <>
 struct EnumNames<MotionRule> {
@@ -31,7 +34,10 @@ struct EnumNames<MotionRule> {
                                                     {MotionRule::kHover, "hover"},
                                                     {MotionRule::kRegionPromising, "region-promising"},
                                                     {MotionRule::kRegionUnexplored, "region-unexplored"},
-                                                    {MotionRule::kRegionNearest, "region-nearest"}};
+                                                    {MotionRule::kRegionNearest, "region-nearest"},
+                                                    {MotionRule::kOutside, "outside"},
+                                                    {MotionRule::kRule, "rule"},
+                                                    {MotionRule::kCommanded, "commanded"}};
 };
 
 // The Algorithm's branch at this timestep.

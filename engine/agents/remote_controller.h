@@ -1,13 +1,16 @@
 // The remote controller: decision-making stage 1, the motion command of timestep k.
+//
+// The Algorithm (early_completion.h) speaks first: it may complete the mission or let the robot hover. Else the command
+// is the strategy's (motion_policy.h), or one from outside.
 #pragma once
 
 #include <cstdint>
 #include <limits>
-#include <vector>
+#include <memory>
 
 #include "engine/agents/context.h"
 #include "engine/agents/early_completion.h"
-#include "engine/agents/region_memory.h"
+#include "engine/agents/motion_policy.h"
 #include "engine/agents/views.h"
 
 namespace ed3r {
@@ -22,14 +25,6 @@ struct MotionDecision {
       std::numeric_limits<double>::quiet_NaN();  // of the command; NaN without a network
 };
 
-// The candidates of one greedy decision, for `ed3r explain`.
-struct CandidateTrace {
-  std::vector<MotionCommand> commands;
-  std::vector<double> rewards;  // predicted
-  std::vector<int> admitted;    // indices that region avoidance left; empty where it left all
-  int chosen = -1;
-};
-
 class RemoteController {
  public:
   explicit RemoteController(const AgentContext& context);
@@ -37,15 +32,20 @@ class RemoteController {
   // To be called once per timestep, k = 1, 2, ... `trace`, where given, receives the candidates of a greedy decision.
   MotionDecision ChooseMotion(const RcView& view, std::uint32_t timestep, CandidateTrace* trace = nullptr);
 
+  // The same in two halves for a command that comes from outside. Observe, once per timestep, says what the Algorithm
+  // orders; Take makes the decision, unless the mission is complete. Where the Algorithm hovers, the command is not
+  // asked for; elsewhere it is cut to the ranges of the order.
+  const CompletionOrder& Observe(const RcView& view, std::uint32_t timestep);
+  MotionDecision Take(const RcView& view, const MotionCommand& command);
+
  private:
-  void ChooseGreedily(const RcView& view, const ActionRanges& ranges, std::uint32_t timestep,
-                      MotionDecision& decision, CandidateTrace* trace);
-  double Predict(const RcView& view, const MotionCommand& command);
+  MotionDecision Ordered() const;
+  MotionDecision Hover(const RcView& view);
 
   const AgentContext context_;
   EarlyCompletion completion_;
-  RegionMemory regions_;
-  Model::Workspace workspace_;
+  CompletionOrder order_;  // of the timestep that was observed last
+  const std::unique_ptr<MotionPolicy> policy_;
 };
 
 }  // namespace ed3r

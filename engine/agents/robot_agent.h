@@ -3,36 +3,28 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
+#include <memory>
 
 #include "engine/agents/context.h"
+#include "engine/agents/execution_policy.h"
 #include "engine/agents/views.h"
-#include "engine/core/random.h"
 
 namespace ed3r {
 
-struct ExecutionDecision {
-  Execution execution = Execution::kFull;
-  bool random = false;                                                 // drawn, not deduced
-  double predicted_reward = std::numeric_limits<double>::quiet_NaN();  // NaN where no network was asked
-};
-
 class RobotAgent {
  public:
-  explicit RobotAgent(const AgentContext& context);
+  explicit RobotAgent(const AgentContext& context) : policy_(context.strategy.execution.make(context)) {}
 
   // epsilon: the one in force at the RC in this timestep.
-  ExecutionDecision ChooseExecution(const RobotView& view, double epsilon, std::uint32_t timestep);
+  ExecutionDecision ChooseExecution(const RobotView& view, double epsilon, std::uint32_t timestep) {
+    return policy_->Choose({view, epsilon, timestep});
+  }
 
   // Predicted rewards of offload, Full and Quantized; NaN without a network. For `ed3r explain`.
-  std::array<double, 3> PredictAll(const RobotView& view);
+  std::array<double, 3> PredictAll(const RobotView& view) { return policy_->PredictAll(view); }
 
  private:
-  const AgentContext context_;
-  Model::Workspace workspace_;
+  const std::unique_ptr<ExecutionPolicy> policy_;
 };
-
-// The distributed rule-based heuristic (Appendix, Baselines; R25). Takes exactly two draws.
-ExecutionDecision DecideByRules(const RbsConfig& rbs, const RobotView& view, Stream& stream);
 
 }  // namespace ed3r

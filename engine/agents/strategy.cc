@@ -2,49 +2,69 @@
 
 #include <fmt/format.h>
 
+#include <vector>
+
+#include "engine/agents/context.h"
+#include "engine/agents/strategies/drawn_execution.h"
+#include "engine/agents/strategies/greedy_execution.h"
+#include "engine/agents/strategies/greedy_motion.h"
+#include "engine/agents/strategies/look_level.h"
+#include "engine/agents/strategies/outside.h"
+#include "engine/agents/strategies/random_walk.h"
+#include "engine/agents/strategies/rbs_execution.h"
 #include "engine/core/check.h"
 #include "engine/core/suggest.h"
 
 namespace ed3r {
 namespace {
 
+template <class Policy>
+std::unique_ptr<MotionPolicy> MakeMotion(const AgentContext& context) {
+  return std::make_unique<Policy>(context);
+}
+
+template <class Policy>
+std::unique_ptr<ExecutionPolicy> MakeExecution(const AgentContext& context) {
+  return std::make_unique<Policy>(context);
+}
+
 constexpr AllowedExecutions kAll{};
-constexpr AllowedExecutions kFullOnly{.offload = false, .full = true, .quantized = false};
-constexpr AllowedExecutions kQuantizedOnly{.offload = false, .full = false, .quantized = true};
 constexpr AllowedExecutions kLocal{.offload = false, .full = true, .quantized = true};
 constexpr AllowedExecutions kOffloadOnly{.offload = true, .full = false, .quantized = false};
+constexpr AllowedExecutions kFullOnly{.offload = false, .full = true, .quantized = false};
+constexpr AllowedExecutions kQuantizedOnly{.offload = false, .full = false, .quantized = true};
 
-constexpr auto kNet = MotionPolicy::kNetwork;
-constexpr auto kWalk = MotionPolicy::kRandom;
+template <class Policy>
+constexpr MotionPart kMotion{MakeMotion<Policy>};
+template <class Policy>
+constexpr ExecutionPart kExecution{MakeExecution<Policy>, kAll};
+
+constexpr MotionPart kWalk = kMotion<RandomWalk>;
+constexpr MotionPart kGreedy{MakeMotion<GreedyMotion>, true};
+constexpr ExecutionPart kBest{MakeExecution<GreedyExecution>, kAll, true};
+constexpr ExecutionPart kBestLocal{MakeExecution<GreedyExecution>, kLocal, true};
+constexpr ExecutionPart kOffload{MakeExecution<OnlyExecution<Execution::kOffload>>, kOffloadOnly};
+constexpr ExecutionPart kFull{MakeExecution<OnlyExecution<Execution::kFull>>, kFullOnly};
+constexpr ExecutionPart kQuantized{MakeExecution<OnlyExecution<Execution::kQuantized>>, kQuantizedOnly};
 
 // clang-format off
 constexpr Strategy kStrategies[] = {
-    // name             motion  robot's choice             among           completion  regions  networks from
-    {"random",          kWalk,  ExecutionPolicy::kRandom,  kAll,           false,      false,   ""},
-    {"random-offload",  kWalk,  ExecutionPolicy::kRandom,  kOffloadOnly,   false,      false,   ""},
-    {"rbs",             kWalk,  ExecutionPolicy::kRules,   kAll,           true,       false,   ""},
-    {"ed3r",            kNet,   ExecutionPolicy::kNetwork, kAll,           true,       true,    "random"},
-    {"ablation-1",      kNet,   ExecutionPolicy::kNetwork, kFullOnly,      true,       true,    "random"},
-    {"ablation-2",      kNet,   ExecutionPolicy::kNetwork, kQuantizedOnly, true,       true,    "random"},
-    {"ablation-3",      kNet,   ExecutionPolicy::kNetwork, kLocal,         true,       true,    "random"},
-    {"ablation-4",      kNet,   ExecutionPolicy::kNetwork, kOffloadOnly,   true,       true,    "random"},
-    {"ecd2r",           kNet,   ExecutionPolicy::kNetwork, kOffloadOnly,   true,       true,    "random-offload"},
+    // name            the RC moves it by   the robot detects by           completion  networks from
+    {"random",         kWalk,               kExecution<DrawnExecution>,    false,      ""},
+    {"random-offload", kWalk,               kOffload,                      false,      ""},
+    {"rbs",            kWalk,               kExecution<RbsExecution>,      true,       ""},
+    {"ed3r",           kGreedy,             kBest,                         true,       "random"},
+    {"ablation-1",     kGreedy,             kFull,                         true,       "random"},
+    {"ablation-2",     kGreedy,             kQuantized,                    true,       "random"},
+    {"ablation-3",     kGreedy,             kBestLocal,                    true,       "random"},
+    {"ablation-4",     kGreedy,             kOffload,                      true,       "random"},
+    {"ecd2r",          kGreedy,             kOffload,                      true,       "random-offload"},
+    {"look-level",     kMotion<LookLevel>,  kQuantized,                    true,       ""},
+    {kOutsideStrategy, kMotion<OutsideMotion>, kExecution<OutsideExecution>, true,     "", true},
 };
 // clang-format on
 
 }  // namespace
-
-bool AllowedExecutions::Allows(Execution execution) const {
-  switch (execution) {
-    case Execution::kOffload:
-      return offload;
-    case Execution::kFull:
-      return full;
-    case Execution::kQuantized:
-      return quantized;
-  }
-  return false;
-}
 
 std::span<const Strategy> Strategies() { return kStrategies; }
 

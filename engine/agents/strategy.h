@@ -1,39 +1,44 @@
-// The strategies as data: who decides what (paper: Result 2, Table of ablations; Appendix, Baselines; R25,
-// R26).
+// The strategies as data: each is composed of how the RC moves the robot and how the robot detects (paper: Result 2,
+// Table of ablations; Appendix, Baselines; R25, R26).
+//
+// A new strategy is a class in strategies/ and a row of the table in strategy.cc.
 #pragma once
 
-#include <array>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "engine/agents/decisions.h"
+#include "engine/agents/execution_policy.h"
+#include "engine/agents/motion_policy.h"
 
 namespace ed3r {
 
-enum class MotionPolicy { kRandom, kNetwork };
-enum class ExecutionPolicy { kRandom, kRules, kNetwork };
+struct AgentContext;
 
-// Set of Execution values that a robot may choose from.
-struct AllowedExecutions {
-  bool offload = true;
-  bool full = true;
-  bool quantized = true;
+struct MotionPart {
+  std::unique_ptr<MotionPolicy> (*make)(const AgentContext& context) = nullptr;
+  bool asks_network = false;  // of the RC
+  bool operator==(const MotionPart&) const = default;
+};
 
-  bool Allows(Execution execution) const;
-  int Count() const { return int{offload} + int{full} + int{quantized}; }
+struct ExecutionPart {
+  std::unique_ptr<ExecutionPolicy> (*make)(const AgentContext& context) = nullptr;
+  AllowedExecutions allowed;  // what it chooses from
+  bool asks_network = false;  // of the robot
 };
 
 struct Strategy {
   std::string_view name;
-  MotionPolicy motion;        // how the RC chooses motion
-  ExecutionPolicy execution;  // how the robot chooses among `allowed`; a single one is fixed
-  AllowedExecutions allowed;
-  bool early_completion;
-  bool region_avoidance;
+  MotionPart motion;
+  ExecutionPart execution;
+  bool early_completion;      // the RC follows the Algorithm
   std::string_view networks;  // warm-up whose networks it uses: a strategy name, "" for none
+  // Its decisions come from outside the engine: a program that steps the missions (engine/mission/mission_stepper.h).
+  bool outside = false;
 };
+
+inline constexpr std::string_view kOutsideStrategy = "external";
 
 std::span<const Strategy> Strategies();
 

@@ -24,6 +24,7 @@ Command AddReport(CLI::App& program);
 Command AddCompare(CLI::App& program);
 Command AddDigest(CLI::App& program);
 Command AddMerge(CLI::App& program);
+Command AddExport(CLI::App& program);
 Command AddVerify(CLI::App& program);
 Command AddDiff(CLI::App& program);
 Command AddReplay(CLI::App& program);

@@ -85,15 +85,7 @@ nlohmann::ordered_json RulesJson(const MissionTask& task, const DecisionProbe& p
   return json;
 }
 
-enum class By { kRules, kNetwork, kDraw, kStrategy };
-
-By DecidedBy(const Strategy& strategy, const DecisionProbe& probe) {
-  if (strategy.execution == ExecutionPolicy::kRules) return By::kRules;
-  if (strategy.allowed.Count() == 1) return By::kStrategy;
-  return probe.execution.random ? By::kDraw : By::kNetwork;
-}
-
-const char* NameOf(By by) {
+const char* NameOf(DecidedBy by) {
   constexpr const char* kNames[] = {"rules", "network", "draw", "strategy"};
   return kNames[static_cast<std::size_t>(by)];
 }
@@ -101,15 +93,15 @@ const char* NameOf(By by) {
 std::string AllowedNames(const Strategy& strategy) {
   std::vector<std::string_view> names;
   for (const auto& [value, name] : EnumNames<Execution>::kNames)
-    if (strategy.allowed.Allows(value)) names.push_back(name);
+    if (strategy.execution.allowed.Allows(value)) names.push_back(name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string ChoiceText(By by, const Strategy& strategy, const DecisionProbe& probe) {
+std::string ChoiceText(DecidedBy by, const Strategy& strategy, const DecisionProbe& probe) {
   switch (by) {
-    case By::kDraw:
+    case DecidedBy::kDraw:
       return "drawn at random from " + AllowedNames(strategy);
-    case By::kStrategy:
+    case DecidedBy::kStrategy:
       return "the only execution of this strategy";
     default:
       return fmt::format("the best prediction among {}", AllowedNames(strategy));
@@ -120,8 +112,8 @@ std::string ChoiceText(By by, const Strategy& strategy, const DecisionProbe& pro
 
 std::string ExecutionText(const MissionTask& task, const DecisionProbe& probe) {
   const Strategy& strategy = FindStrategy(task.config.mission.strategy);
-  const By by = DecidedBy(strategy, probe);
-  if (by == By::kRules) return RulesText(task, probe);
+  const DecidedBy by = probe.execution.by;
+  if (by == DecidedBy::kRules) return RulesText(task, probe);
   std::string text;
   for (const auto& [value, name] : EnumNames<Execution>::kNames) {
     const double reward = probe.robot_rewards[static_cast<std::size_t>(value)];
@@ -132,10 +124,10 @@ std::string ExecutionText(const MissionTask& task, const DecisionProbe& probe) {
 }
 
 void AddExecution(const MissionTask& task, const DecisionProbe& probe, nlohmann::ordered_json& object) {
-  const By by = DecidedBy(FindStrategy(task.config.mission.strategy), probe);
+  const DecidedBy by = probe.execution.by;
   object["execution"] = NameOf(probe.execution.execution);
   object["execution_by"] = NameOf(by);
-  if (by == By::kRules) object["rules"] = RulesJson(task, probe);
+  if (by == DecidedBy::kRules) object["rules"] = RulesJson(task, probe);
   for (const auto& [value, name] : EnumNames<Execution>::kNames) {
     const double reward = probe.robot_rewards[static_cast<std::size_t>(value)];
     if (!std::isnan(reward)) object["robot_predicted_rewards"][std::string(name)] = reward;

@@ -29,7 +29,7 @@ std::vector<Command> AddCommands(CLI::App& program) {
           AddCompare(program), AddDigest(program), AddMerge(program),   AddVerify(program),
           AddDiff(program),    AddReplay(program), AddExplain(program), AddParams(program),
           AddPhysics(program), AddFit(program),    AddWorld(program),   AddFrames(program),
-          AddDetect(program),  AddDoctor(program)};
+          AddDetect(program),  AddExport(program), AddDoctor(program)};
 }
 
 // What is wrong with a command line that the parser refuses. A word left over that no command took should have been a

@@ -30,7 +30,7 @@ SweepPlan StoredPlan(const ResultReader& reader, const RestoredFiles& files) {
   for (Stage& stage : plan.stages)
     for (Arm& arm : stage.arms)
       for (const auto& [key, called] : arm.files) {
-        if (called == kBuiltInDetector) continue;
+        if (called == FileNotNeeded(key)) continue;
         const std::string problem = SetParameter(arm.config, key, files.PathOf(called));
         ED3R_CHECK(problem.empty(), problem);
       }
@@ -110,7 +110,12 @@ RunId StoredRun::Find(const std::string& mission) const {
 
 MissionTask StoredRun::Task(const RunId& id) {
   const Arm& arm = plan_.stages[static_cast<std::size_t>(id.stage)].arms[static_cast<std::size_t>(id.arm)];
-  if (networks_ == nullptr && !FindStrategy(arm.config.mission.strategy).networks.empty()) {
+  if (FindStrategy(arm.config.mission.strategy).outside)
+    throw UserError(
+        fmt::format("{}: arm {}: the decisions of strategy {} came from a program, which alone can fly its "
+                    "missions again",
+                    reader_.dir(), arm.name, kOutsideStrategy));
+  if (networks_ == nullptr && NeedsTraining(arm.config)) {
     const FlownNetworks flown = reader_.Networks();
     networks_ = flown.uses.empty()
                     ? TrainNetworks(plan_, {"", reader_.dir(), cache_dir_, ThreadsFor(0), nullptr})

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <optional>
 
 #include "engine/agents/strategy.h"
-#include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/sweep/sweep_file.h"
 #include "studies/metrics/definitions.h"
@@ -33,15 +31,6 @@ MissionsOverride ParseMissions(const std::string& text) {
   if (!value || equals == 0)
     throw UserError(fmt::format("--missions: '{}' is not allowed; allowed: N or STAGE=N", text));
   return {named ? text.substr(0, equals) : "", *value};
-}
-
-std::string CheckMetricName(const std::string& name) {
-  std::vector<std::string> names;
-  for (const MetricDefinition& metric : MetricDefinitions())
-    if (metric.estimate != Estimate::kMaximum) names.emplace_back(metric.name);
-  if (std::find(names.begin(), names.end(), name) != names.end()) return "";
-  return fmt::format("metric: '{}' is not allowed; allowed: {}{}", name, fmt::join(names, " | "),
-                     DidYouMean(name, names));
 }
 
 }  // namespace

@@ -191,4 +191,21 @@ struct RbsConfig {
   }
 };
 
+// Networks of the user's own in place of those that a run trains.
+struct NetworksConfig {
+  std::string rc = "trained";
+  std::string robot = "trained";
+
+  template <class Self, class Visitor>
+  static void Describe(Self& self, Visitor&& visit) {
+    constexpr std::string_view kSource = "none in the paper";
+    visit("rc", self.rc,
+          {.source = kSource,
+           .meaning = "network of the RC: trained, or an ONNX network's path from the sweep file"});
+    visit("robot", self.robot,
+          {.source = kSource,
+           .meaning = "network of the robot: trained, or an ONNX network's path from the sweep file"});
+  }
+};
+
 }  // namespace ed3r

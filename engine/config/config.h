@@ -31,6 +31,7 @@ struct Config {
   PerceptionConfig perception;
   AgentsConfig agents;
   RbsConfig rbs;
+  NetworksConfig networks;
   TrainingConfig training;
   OperatingPoint point;
 
@@ -46,6 +47,7 @@ struct Config {
     visit.Nested("perception", self.perception);
     visit.Nested("agents", self.agents);
     visit.Nested("rbs", self.rbs);
+    visit.Nested("networks", self.networks);
     visit.Nested("training", self.training);
     constexpr std::string_view kSource = "ed3r physics only";
     visit("cpu.frequency_hz", self.point.cpu_frequency_hz,

@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace ed3r {
-namespace {
 
 double MovementJ(const TimestepRecord& s) {
   return s.horizontal_j + s.ascent_j + s.descent_j + s.hover_turning_j + s.hover_sensing_j +
@@ -15,8 +14,6 @@ double DurationS(const TimestepRecord& s) {
   return s.horizontal_s + s.ascent_s + s.descent_s + s.turning_s + s.sensing_s + s.computing_s +
          s.transmitting_s;
 }
-
-}  // namespace
 
 TimestepRecord OpenStep(std::uint32_t k, const MotionDecision& motion, const FlownMove& move,
                         const ExecutionDecision& execution) {

@@ -16,6 +16,10 @@ void RecordLink(const Conditions& conditions, double rc_distance_m, const Link& 
 void RecordLedger(const StepTime& time, const StepEnergy& energy, double battery_left_j,
                   TimestepRecord& step);
 
+// Of one timestep: all movement, hovering included, and all of its time.
+double MovementJ(const TimestepRecord& step);
+double DurationS(const TimestepRecord& step);
+
 // Fills every sum of the mission from its steps.
 void SumSteps(double eta_min, MissionRecord& record);
 

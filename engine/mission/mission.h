@@ -2,19 +2,29 @@
 //
 // Each timestep reads like the paper: the RC decides a motion (stage 1), the robot flies it, decides where and how to
 // detect (stage 2), senses and detects, and everything is billed. Nothing is learned online (R18).
+//
+// A Mission takes the decisions of whoever makes them; FlyMission() is the loop over it with the agents of the strategy,
+// mission_stepper.h the one for decisions from outside.
 #pragma once
 
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
 
 #include "engine/agents/context.h"
 #include "engine/agents/remote_controller.h"
 #include "engine/agents/robot_agent.h"
 #include "engine/config/config.h"
 #include "engine/mission/record.h"
+#include "engine/mission/scenario.h"
 #include "engine/perception/pixels/pixel_sensor.h"
+#include "engine/perception/sensor.h"
+#include "engine/radio/link.h"
 #include "engine/robot/flight.h"
+#include "engine/robot/ledger.h"
 #include "engine/world/scene.h"
 
 namespace ed3r {
@@ -43,6 +53,74 @@ struct MissionTask {
   const std::atomic<bool>* stop = nullptr;  // checked between timesteps; set: Interrupted is thrown
   DecisionProbe* probe = nullptr;
   TraceSink* trace = nullptr;  // receives the flown path; for replays
+};
+
+// What stage 2 needs to know once the robot has arrived.
+struct Arrival {
+  Conditions conditions;
+  double rc_distance_m = 0.0;
+  Link link;
+};
+
+// A mission that is flown timestep by timestep, two stages each:
+//
+//   ControllerView() -> the RC decides -> Execute(motion), or Complete()
+//   OnboardView() -> the robot decides -> Detect(execution)
+//
+// until Ended(); then Record(). Calls in another order are an InternalError. Scene, configuration and what else the task
+// points to must outlive it. Threads: one mission, one thread; missions are independent of each other.
+class Mission {
+ public:
+  explicit Mission(const MissionTask& task);
+
+  AgentContext Agents() const;                   // what its agents are made from
+  std::uint32_t Timestep() const { return k_; }  // the one that is decided next, or goes on
+  bool Ended() const { return outcome_.has_value(); }
+  std::optional<Outcome> Result() const { return outcome_; }  // none until it has ended
+
+  RcView ControllerView() const;
+  void Execute(const MotionDecision& motion);  // flies it: Bullet, LiDAR veto
+  void Complete();                             // in place of Execute: the RC ends the mission
+
+  RobotView OnboardView() const;
+  void Detect(
+      const ExecutionDecision& execution);  // senses, detects, bills; ends it where the battery cannot pay
+
+  // What the timestep that Detect ended came to. One that the battery could not pay is not part of the record.
+  const TimestepRecord& LastStep() const { return last_; }
+
+  // To be called once, when it has ended: the mission with everything summed and its ledger proven.
+  MissionRecord Record();
+
+ private:
+  enum class Stage { kMotion, kExecution };
+
+  void Sense(Execution execution);
+  StepTime TimeOf(Execution execution) const;
+  DeviceEnergy DevicesOf(Execution execution) const;
+  ComputationCost OnboardCost(Execution execution) const;
+  Outcome OutcomeOfCompletion() const;
+
+  const MissionTask task_;
+  const Config& config_;
+  const Scenario scenario_;
+  const Eigen::Vector3d antenna_m_;
+  const MovementPower power_;
+  Flight flight_;
+  const std::unique_ptr<Sensor> sensor_;
+  double battery_j_;  // beta_k
+  double distance_m_ = 0.0;
+  std::vector<TimestepRecord> steps_;
+  std::optional<Outcome> outcome_;
+
+  // Of the timestep that is under way.
+  std::uint32_t k_ = 1;
+  Stage stage_ = Stage::kMotion;
+  std::uint32_t view_begin_ = 1;  // the timestep in which the robot came to where it is
+  MotionDecision motion_;
+  FlownMove move_;
+  Arrival arrival_;
+  TimestepRecord last_;
 };
 
 // Throws BrokenInvariant (invariants.h), InternalError for any other defect, UserError when the configuration does not fit

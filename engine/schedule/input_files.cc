@@ -28,7 +28,7 @@ std::map<std::string, fs::path> CalledFiles(const SweepPlan& plan) {
       for (const std::string& key : ParameterKeys()) {
         if (!NamesAFile(key)) continue;
         const std::string path = GetParameter(arm.config, key);
-        if (path != kBuiltInDetector) called[GetParameter(arm.CanonicalConfig(), key)] = Located(path);
+        if (path != FileNotNeeded(key)) called[GetParameter(arm.CanonicalConfig(), key)] = Located(path);
       }
   return called;
 }

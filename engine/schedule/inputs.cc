@@ -15,6 +15,7 @@
 #include "engine/schedule/parallel_for.h"
 #include "engine/schedule/scheduler.h"
 #include "engine/schedule/training_stage.h"
+#include "engine/sweep/setting.h"
 
 namespace ed3r {
 namespace {
@@ -68,6 +69,7 @@ Inputs::Inputs(const SweepPlan& plan) {
       try {
         CheckArm(arm, SceneOf(arm.config), plan.seed);
         AddPixels(arm.config);
+        AddNetworks(arm.config);
       } catch (const UserError& error) {
         throw UserError(fmt::format("{}: arm {}: {}", plan.file, arm.name, error.what()));
       }
@@ -83,6 +85,29 @@ void Inputs::AddPixels(const Config& config) {
   tier.scene = std::make_shared<const TraceScene>(SceneOf(config));
 }
 
+void Inputs::AddNetworks(const Config& config) {
+  const Strategy& strategy = FindStrategy(config.mission.strategy);
+  const auto add = [&](const char* key, const std::string& file, bool asked, const NetworkDesign& design,
+                       auto& networks) {
+    if (file == FileNotNeeded(key) || networks.contains(file)) return;
+    if (!asked)
+      throw UserError(
+          fmt::format("{}: '{}' is not allowed; strategy {} asks no such network", key, file, strategy.name));
+    networks[file] = OnnxNetwork::Read(file, key, design);
+  };
+  add("networks.rc", config.networks.rc, strategy.motion.asks_network, kRcNetwork, rc_networks_);
+  add("networks.robot", config.networks.robot, strategy.execution.asks_network, kRobotNetwork,
+      robot_networks_);
+}
+
+Networks Inputs::NetworksOf(const Config& config) const {
+  const auto find = [](const auto& networks, const std::string& file) -> const Model* {
+    const auto found = networks.find(file);
+    return found == networks.end() ? nullptr : &found->second->model();
+  };
+  return {find(rc_networks_, config.networks.rc), find(robot_networks_, config.networks.robot)};
+}
+
 const Scene& Inputs::SceneOf(const Config& config) const { return *scenes_.at(config.mission.world); }
 
 const PixelTier* Inputs::PixelsOf(const Config& config) const {
@@ -95,6 +120,13 @@ std::map<std::string, std::string> Inputs::Fingerprints(const SweepPlan& plan) c
     for (const Arm& arm : stage.arms) {
       const Config named = arm.CanonicalConfig();
       fingerprints[named.mission.world] = SceneOf(arm.config).Fingerprint();
+      const auto add = [&](const auto& networks, const std::string& file, const std::string& called) {
+        const auto found = networks.find(file);
+        if (found != networks.end())
+          fingerprints[fmt::format("network {}", called)] = found->second->sha256();
+      };
+      add(rc_networks_, arm.config.networks.rc, named.networks.rc);
+      add(robot_networks_, arm.config.networks.robot, named.networks.robot);
       if (const PixelTier* pixels = PixelsOf(arm.config)) {
         const DetectorConfig& detector = named.perception.detector;
         fingerprints[fmt::format("detectors {}, {}", detector.full, detector.quantized)] =

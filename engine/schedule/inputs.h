@@ -5,7 +5,9 @@
 #include <memory>
 #include <string>
 
+#include "engine/agents/context.h"
 #include "engine/perception/pixels/pixel_sensor.h"
+#include "engine/rfnn/onnx_network.h"
 #include "engine/sweep/plan.h"
 #include "engine/world/scene.h"
 
@@ -19,15 +21,18 @@ class Inputs {
 
   const Scene& SceneOf(const Config& config) const;
   const PixelTier* PixelsOf(const Config& config) const;  // null in the fast tier
+  Networks NetworksOf(const Config& config) const;        // the user's own; null where they are trained
 
   // Fingerprint of everything in a file or in the program's data that results depend on, by name.
   std::map<std::string, std::string> Fingerprints(const SweepPlan& plan) const;
 
  private:
   void AddPixels(const Config& config);
+  void AddNetworks(const Config& config);
 
   std::map<std::string, std::shared_ptr<const Scene>> scenes_;  // by mission.world
   std::map<std::string, PixelTier> pixels_;                     // by PixelKey
+  std::map<std::string, std::shared_ptr<const OnnxNetwork>> rc_networks_, robot_networks_;  // by path
 };
 
 }  // namespace ed3r

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <set>
 
+#include "engine/agents/strategy.h"
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/math_library.h"
@@ -13,20 +15,24 @@
 #include "engine/mission/mission.h"
 #include "engine/mission/scenario.h"
 #include "engine/schedule/input_files.h"
+#include "engine/schedule/recorder.h"
 #include "engine/store/store.h"
 
 namespace ed3r {
 namespace {
 
-Recipe RecipeOf(const SweepPlan& plan, const Inputs& inputs,
-                const std::map<std::string, std::string>& notes) {
+bool IsOutside(const Arm& arm) { return FindStrategy(arm.config.mission.strategy).outside; }
+
+Recipe RecipeOf(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options) {
   InputFiles files = ReadInputFiles(plan);
+  CodeIdentities code = CodeOf(plan);
+  if (!options.outside_identity.empty()) code["policy"] = {options.outside_identity};
   return {.plan_text = plan.CanonicalText(),
-          .code = CodeOf(plan),
+          .code = std::move(code),
           .inputs = inputs.Fingerprints(plan),
           .places = std::move(files.places),
           .files = std::move(files.files),
-          .notes = notes};
+          .notes = options.notes};
 }
 
 void Add(const RunSummary& part, RunSummary& sum) {
@@ -82,6 +88,9 @@ MissionTask TaskOf(const SweepPlan& plan, const Inputs& inputs, const NetworkShe
     task.networks = networks->For(id, places);
     task.network_seed = networks->SeedIndex(id, places);
   }
+  const Networks own = inputs.NetworksOf(arm.config);
+  if (own.rc != nullptr) task.networks.rc = own.rc;
+  if (own.robot != nullptr) task.networks.robot = own.robot;
   return task;
 }
 
@@ -95,7 +104,7 @@ class Stages {
         inputs_(inputs),
         options_(options),
         layout_(LayoutOf(plan)),
-        store_(ResultStore::Open(options.dir, RecipeOf(plan, inputs, options.notes), layout_,
+        store_(ResultStore::Open(options.dir, RecipeOf(plan, inputs, options), layout_,
                                  options.accept_mixed ? OtherCode::kAccept : OtherCode::kRefuse)) {
     RemoveLeftovers(options.dir);
     RemoveLeftovers(options.cache_dir);
@@ -157,7 +166,38 @@ class Stages {
       task.stop = &stop;
       return FlyMission(task);
     };
-    Add(RunMissions(todo, fly, *store_, schedule), summary_.flown);
+    std::vector<RunId> inside, outside;
+    std::partition_copy(todo.begin(), todo.end(), std::back_inserter(outside), std::back_inserter(inside),
+                        [&](const RunId& id) { return IsOutside(ArmOf(id)); });
+    Add(RunMissions(inside, fly, *store_, schedule), summary_.flown);
+    while (!outside.empty() && !summary_.flown.interrupted) {
+      const int arm = outside.front().arm;
+      std::vector<RunId> of_arm;
+      std::copy_if(outside.begin(), outside.end(), std::back_inserter(of_arm),
+                   [&](const RunId& id) { return id.arm == arm; });
+      std::erase_if(outside, [&](const RunId& id) { return id.arm == arm; });
+      Add(FlyOutside(of_arm, schedule), summary_.flown);
+    }
+  }
+
+  const Arm& ArmOf(const RunId& id) const {
+    return plan_.stages[static_cast<std::size_t>(id.stage)].arms[static_cast<std::size_t>(id.arm)];
+  }
+
+  RunSummary FlyOutside(const std::vector<RunId>& todo, const ScheduleOptions& schedule) {
+    const auto missions = static_cast<std::int64_t>(todo.size());
+    Recorder recorder(*store_, schedule, missions, todo.size());
+    options_.outside(
+        ArmOf(todo.front()), todo,
+        [&](const RunId& id, std::optional<MissionRecord> record, std::string failure) {
+          recorder.Offer({id, std::move(record), std::move(failure), 0.0});
+        },
+        recorder.stop());
+    RunSummary summary = recorder.Finish();
+    summary.threads = ThreadsFor(schedule.threads);
+    summary.dropped = missions - summary.stored - summary.failed;
+    summary.interrupted = summary.dropped > 0;
+    return summary;
   }
 
   // Rounds of `every` missions for the arms that are not yet known well enough. A run that goes on takes the same
@@ -215,6 +255,14 @@ class Stages {
 }  // namespace
 
 SweepSummary RunSweep(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options) {
+  for (const Stage& stage : plan.stages)
+    for (const Arm& arm : stage.arms)
+      if (stage.kind == StageKind::kFly && IsOutside(arm) && !options.outside)
+        throw UserError(
+            fmt::format("{}: stage {}: arm {}: the decisions of strategy {} come from a program; fly it with "
+                        "ed3r.fly of the "
+                        "Python module",
+                        plan.file, stage.name, arm.name, kOutsideStrategy));
   for (const Stage& stage : plan.stages)
     if (stage.precision && options.shard.count > 1)
       throw UserError(

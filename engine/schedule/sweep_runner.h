@@ -4,7 +4,9 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/mission/mission.h"
 #include "engine/schedule/inputs.h"
@@ -29,6 +31,14 @@ MissionTask TaskOf(const SweepPlan& plan, const Inputs& inputs, const NetworkShe
 using HalfWidthFn = std::function<double(const std::string& dir, int stage, int arm, int missions,
                                          const std::string& metric)>;
 
+// Flies missions of one arm whose decisions come from outside (strategy external). Each that has ended is offered, or why it
+// failed; what is left when `stop` becomes true is flown another time. What it throws ends the sweep; what was offered is
+// kept.
+using OfferFn =
+    std::function<void(const RunId& id, std::optional<MissionRecord> record, std::string failure)>;
+using OutsideFn = std::function<void(const Arm& arm, const std::vector<RunId>& todo, const OfferFn& offer,
+                                     const std::atomic<bool>& stop)>;
+
 struct SweepOptions {
   std::string dir;
   std::string cache_dir;  // networks of all sweeps
@@ -38,6 +48,8 @@ struct SweepOptions {
   bool only_failed = false;                  // fly what has failed again, and nothing that is missing
   bool accept_mixed = false;                 // continue what other code has begun
   HalfWidthFn half_width;                    // asked by stages with a precision
+  OutsideFn outside;                         // without it a plan with such arms is refused
+  std::string outside_identity;              // of what decides: a run is continued by the same alone
   std::map<std::string, std::string> notes;  // on machine and libraries, stored with the session
 };
 

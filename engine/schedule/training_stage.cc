@@ -12,6 +12,7 @@
 #include "engine/rfnn/model_file.h"
 #include "engine/rfnn/train_all.h"
 #include "engine/store/reader.h"
+#include "engine/sweep/setting.h"
 
 namespace ed3r {
 namespace {
@@ -20,8 +21,14 @@ namespace {
 constexpr char kRcAgent[] = "rc";
 constexpr char kRobotAgent[] = "robot";
 
-bool RobotChooses(const Strategy& strategy) {
-  return strategy.execution == ExecutionPolicy::kNetwork && strategy.allowed.Count() > 1;
+// What is trained for an arm.
+bool NeedsRc(const Config& config) {
+  return FindStrategy(config.mission.strategy).motion.asks_network &&
+         config.networks.rc == FileNotNeeded("networks.rc");
+}
+bool NeedsRobot(const Config& config) {
+  return FindStrategy(config.mission.strategy).execution.asks_network &&
+         config.networks.robot == FileNotNeeded("networks.robot");
 }
 
 // Stages that `stage` builds on, directly or not.
@@ -161,11 +168,12 @@ void NetworkShelf::Take(NetworkShelf&& other) {
   }
 }
 
+bool NeedsTraining(const Config& config) { return NeedsRc(config) || NeedsRobot(config); }
+
 bool NeedsNetworks(const SweepPlan& plan) {
   return std::any_of(plan.stages.begin(), plan.stages.end(), [](const Stage& stage) {
-    return std::any_of(stage.arms.begin(), stage.arms.end(), [](const Arm& arm) {
-      return !FindStrategy(arm.config.mission.strategy).networks.empty();
-    });
+    return std::any_of(stage.arms.begin(), stage.arms.end(),
+                       [](const Arm& arm) { return NeedsTraining(arm.config); });
   });
 }
 
@@ -173,7 +181,7 @@ void CheckTraining(const SweepPlan& plan) {
   for (const Stage& stage : plan.stages) {
     for (const Arm& arm : stage.arms) {
       const Strategy& strategy = FindStrategy(arm.config.mission.strategy);
-      if (stage.kind != StageKind::kFly || strategy.networks.empty()) continue;
+      if (stage.kind != StageKind::kFly || !NeedsTraining(arm.config)) continue;
       if (ChooseWarmup(plan, stage, arm, strategy.networks).warmup.first < 0)
         throw UserError(
             fmt::format("{}: stage {}: arm {} asks networks, so the stage must come after a training stage "
@@ -243,14 +251,15 @@ void TrainingStage::Collect() {
     for (std::size_t a = 0; a < stage.arms.size(); ++a) {
       const Arm& arm = stage.arms[a];
       const Strategy& strategy = FindStrategy(arm.config.mission.strategy);
-      if (stage.kind != StageKind::kFly || strategy.networks.empty()) continue;
+      if (stage.kind != StageKind::kFly || !NeedsTraining(arm.config)) continue;
       const WarmupChoice choice = ChooseWarmup(plan_, stage, arm, strategy.networks);
       if (!options_.stage.empty() && !choice.trainings.contains(options_.stage)) continue;
       const Samples& samples = SamplesFor(choice.warmup, arm.config.agents);
       ArmNeed need{static_cast<int>(s), static_cast<int>(a), {}, {}};
       for (int seed = 0; seed < arm.config.training.seeds; ++seed) {
-        need.rc_jobs.push_back(AddJob(kRcNetwork, samples.rc, arm, strategy.networks, seed));
-        if (RobotChooses(strategy))
+        if (NeedsRc(arm.config))
+          need.rc_jobs.push_back(AddJob(kRcNetwork, samples.rc, arm, strategy.networks, seed));
+        if (NeedsRobot(arm.config))
           need.robot_jobs.push_back(AddJob(kRobotNetwork, samples.robot, arm, strategy.networks, seed));
       }
       needs_.push_back(std::move(need));
@@ -281,9 +290,9 @@ std::unique_ptr<NetworkShelf> TrainingStage::Run() {
     shelf->all_.push_back({names_[i], CachePath(options_.cache_dir, jobs_[i]), models[i]});
   for (const ArmNeed& need : needs_) {
     std::vector<NetworkShelf::Pair>& pairs = shelf->by_arm_[{need.stage, need.arm}];
-    for (std::size_t seed = 0; seed < need.rc_jobs.size(); ++seed)
-      pairs.push_back(
-          {models[need.rc_jobs[seed]], need.robot_jobs.empty() ? nullptr : models[need.robot_jobs[seed]]});
+    for (std::size_t seed = 0; seed < std::max(need.rc_jobs.size(), need.robot_jobs.size()); ++seed)
+      pairs.push_back({need.rc_jobs.empty() ? nullptr : models[need.rc_jobs[seed]],
+                       need.robot_jobs.empty() ? nullptr : models[need.robot_jobs[seed]]});
   }
   return shelf;
 }

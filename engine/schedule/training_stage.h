@@ -65,7 +65,8 @@ struct TrainingOptions {
   bool quiet = false;
 };
 
-// Whether any arm of the plan asks for networks.
+// Whether an arm, or any arm of the plan, asks for networks that are trained: its strategy asks one, and it is no file.
+bool NeedsTraining(const Config& config);
 bool NeedsNetworks(const SweepPlan& plan);
 
 // Arms that ask for networks must stand in stages behind a training stage that is behind a warm-up with their source

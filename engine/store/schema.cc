@@ -15,6 +15,7 @@
 #include "engine/store/checksums.h"
 #include "engine/store/columns.h"
 #include "engine/store/records.h"
+#include "engine/store/words.h"
 
 namespace ed3r {
 namespace {
@@ -48,6 +49,24 @@ CREATE TABLE missions (run INTEGER, mission INTEGER, checksum TEXT NOT NULL, ste
 CREATE TABLE timesteps (run INTEGER, mission INTEGER, {}, PRIMARY KEY (run, mission, k)) STRICT, WITHOUT ROWID;
 )",
                      ColumnDefinitions<MissionRecord>(), ColumnDefinitions<TimestepRecord>());
+}
+
+template <class Record>
+std::string ViewDefinition(std::string_view table) {
+  std::string columns;
+  for (const Column& column : ColumnsOf<Record>()) {
+    std::string value = fmt::format("{}.{}", table, column.name);
+    if (const auto words = WordsOf(column.name); !words.empty()) {
+      value = fmt::format("CASE {}", value);
+      for (const auto& [code, word] : words) value += fmt::format(" WHEN {} THEN '{}'", code, word);
+      value += " END";
+    }
+    columns += fmt::format(", {} AS {}", value, column.name);
+  }
+  return fmt::format(
+      "CREATE VIEW named_{0} AS SELECT stages.name AS stage, runs.name AS arm, {0}.mission AS mission{1}\n"
+      "  FROM {0} JOIN runs ON runs.run = {0}.run JOIN stages ON stages.stage = runs.stage;\n",
+      table, columns);
 }
 
 // Over everything that says what the missions are missions of: the name of each table, then its rows as texts.
@@ -125,6 +144,7 @@ FileKind CheckFile(Connection& database, FileUse use) {
 
 void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& layout) {
   database.Execute(TableDefinitions());
+  database.Execute(ViewDefinition<MissionRecord>("missions") + ViewDefinition<TimestepRecord>("timesteps"));
   Statement put(database, "INSERT INTO recipe VALUES (?, ?)");
   put.Run("sweep", layout.name);
   put.Run("seed", std::to_string(layout.seed));

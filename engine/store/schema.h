@@ -13,6 +13,9 @@
 //   sessions        who wrote, when and with what (session_notes): in no digest
 //   timings         wall time of each mission and its session: in no digest
 //
+//   named_missions, named_timesteps   views of them for people: stage and arm by name, outcome, motion_rule and execution
+//                   as words; units are in the columns' names. Files of before have none.
+//
 // missions and timesteps are clustered by their keys (WITHOUT ROWID), so that every reader gets the canonical
 // order without sorting, whatever the order of arrival.
 //

@@ -13,12 +13,21 @@
 namespace ed3r {
 namespace {
 
-constexpr std::string_view kWorldKey = "mission.world";
-constexpr std::string_view kDetectorKeys[] = {"perception.detector.full", "perception.detector.quantized"};
+struct FileKey {
+  std::string_view key;
+  std::string_view not_needed;
+};
+constexpr FileKey kFileKeys[] = {{"mission.world", ""},
+                                 {"perception.detector.full", "builtin"},
+                                 {"perception.detector.quantized", "builtin"},
+                                 {"networks.rc", "trained"},
+                                 {"networks.robot", "trained"}};
 constexpr std::string_view kAirframeKey = "robot";
 
-bool IsDetector(std::string_view key) {
-  return std::find(std::begin(kDetectorKeys), std::end(kDetectorKeys), key) != std::end(kDetectorKeys);
+const FileKey* FindFileKey(std::string_view key) {
+  const auto* found = std::find_if(std::begin(kFileKeys), std::end(kFileKeys),
+                                   [&](const FileKey& k) { return k.key == key; });
+  return found == std::end(kFileKeys) ? nullptr : found;
 }
 
 std::filesystem::path Absolute(const std::string& path, const std::string& at) {
@@ -52,7 +61,7 @@ Setting SettingReader::Read(const std::string& written_key, const std::string& k
   if (check_) {
     if (const std::string problem = check_(setting.key, text); !problem.empty()) FailAt(at, problem);
   }
-  if (setting.key == kWorldKey || (IsDetector(setting.key) && text != kBuiltInDetector)) {
+  if (NamesAFile(setting.key) && text != FileNotNeeded(setting.key)) {
     ResolveFile(setting);
   } else {
     setting.text = setting.canonical = GetParameter(scratch, setting.key);  // 1e0, 1.0 and 1 are one value
@@ -60,16 +69,22 @@ Setting SettingReader::Read(const std::string& written_key, const std::string& k
   return setting;
 }
 
-bool NamesAFile(std::string_view key) { return key == kWorldKey || IsDetector(key); }
+bool NamesAFile(std::string_view key) { return FindFileKey(key) != nullptr; }
+
+std::string_view FileNotNeeded(std::string_view key) {
+  const FileKey* found = FindFileKey(key);
+  return found == nullptr ? std::string_view() : found->not_needed;
+}
 
 void SettingReader::ResolveFile(Setting& setting) const {
   const std::filesystem::path written(setting.text);
   setting.text = PathFrom(folder_, setting.text);
+  const std::string_view other = FileNotNeeded(setting.key);
   std::error_code error;
   if (!std::filesystem::is_regular_file(setting.text, error))
     FailAt(setting.at,
            fmt::format("{}: '{}' is not a file; looked for '{}'{}", setting.key, setting.canonical,
-                       setting.text, IsDetector(setting.key) ? "; 'builtin' is allowed too" : ""));
+                       setting.text, other.empty() ? "" : fmt::format("; '{}' is allowed too", other)));
   if (written.is_absolute() || keep_absolute_) {
     setting.canonical = setting.text;
   } else {

@@ -32,10 +32,10 @@ std::string FolderOf(const std::string& file);
 // A path as it can be opened, when it is written in a file of this folder.
 std::string PathFrom(const std::string& folder, const std::string& written);
 
-constexpr char kBuiltInDetector[] = "builtin";  // a detector that is no file
-
-// Whether the value of this parameter is a path: a world, or a detector that is not built in.
+// Whether a parameter may name a file: a world, a detector, a network. FileNotNeeded: the word that stands for none
+// ("builtin" for detectors, "trained" for networks), "" for worlds.
 bool NamesAFile(std::string_view key);
+std::string_view FileNotNeeded(std::string_view key);
 
 // The parameters of an airframe file, which 'robot: FILE' includes: a YAML map of robot.*, energy.*, environment.* and
 // cpu.* keys, as `ed3r fit` writes it. Positions are those in that file.

@@ -1,8 +1,13 @@
 #include "studies/metrics/definitions.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "engine/core/check.h"
+#include "engine/core/suggest.h"
 
 namespace ed3r {
 namespace {
@@ -68,6 +73,16 @@ constexpr MetricDefinition kMetrics[] = {
 }  // namespace
 
 std::span<const MetricDefinition> MetricDefinitions() { return kMetrics; }
+
+std::string CheckMetricName(const std::string& name) {
+  std::vector<std::string> names;
+  for (const MetricDefinition& metric : kMetrics)
+    if (metric.estimate != Estimate::kMaximum) names.emplace_back(metric.name);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return "";
+  const std::string nearest = NearestWord(name, names);
+  return fmt::format("metric: '{}' is not allowed; allowed: {}{}", name, fmt::join(names, " | "),
+                     nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
+}
 
 std::size_t MetricIndex(std::string_view name) {
   for (std::size_t i = 0; i < std::size(kMetrics); ++i)

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "engine/mission/record.h"
@@ -40,6 +41,9 @@ struct MetricDefinition {
 
 // In the order of the tables. Lives as long as the program.
 std::span<const MetricDefinition> MetricDefinitions();
+
+// "" for the name of a metric that has an interval, else a clause that lists them and names the nearest.
+std::string CheckMetricName(const std::string& name);
 
 // Position in MetricDefinitions(); ED3R_CHECK that there is one.
 std::size_t MetricIndex(std::string_view name);

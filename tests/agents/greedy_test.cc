@@ -76,10 +76,33 @@ TEST_F(GreedyTest, EpsilonIsAShareOfTimesteps) {
 
 TEST_F(GreedyTest, EpsilonDecaysPerMissionToItsFloor) {
   const AgentsConfig agents;
-  EXPECT_EQ(EpsilonOfMission(agents, FindStrategy("ed3r"), 0), 1.0);
-  EXPECT_NEAR(EpsilonOfMission(agents, FindStrategy("ed3r"), 10), std::pow(0.95, 10), 1e-12);
-  EXPECT_EQ(EpsilonOfMission(agents, FindStrategy("ed3r"), 849), 0.01);
-  EXPECT_EQ(EpsilonOfMission(agents, FindStrategy("rbs"), 849), 1.0);
+  EXPECT_EQ(EpsilonOfMission(agents, 0), 1.0);
+  EXPECT_NEAR(EpsilonOfMission(agents, 10), std::pow(0.95, 10), 1e-12);
+  EXPECT_EQ(EpsilonOfMission(agents, 849), 0.01);
+}
+
+TEST_F(GreedyTest, ARandomWalkIsAllExploration) {
+  EXPECT_EQ(RemoteController(Context("rbs", 0.01)).ChooseMotion(View(), 1).epsilon, 1.0);
+}
+
+// A command from outside takes the strategy's place where the Algorithm leaves the choice, cut to the ranges.
+TEST_F(GreedyTest, ACommandFromOutsideIsCutToTheRanges) {
+  RemoteController controller(Context("external", 0.0));
+  RcView view = View();
+  EXPECT_FALSE(controller.Observe(view, 1).hover);
+  const MotionDecision first =
+      controller.Take(view, {.displacement_m = {100, -3, 2}, .turn_rad = -9, .tilt_rad = 0.1});
+  EXPECT_EQ(first.rule, MotionRule::kOutside);
+  EXPECT_EQ(first.command.displacement_m, Eigen::Vector3d(20, -3, 2));
+  EXPECT_NEAR(first.command.turn_rad, -1.5707963267948966, 1e-15);
+  EXPECT_EQ(first.command.tilt_rad, 0.1);
+  EXPECT_THROW(controller.Take(view, {.turn_rad = NAN}), UserError);
+  EXPECT_THROW(controller.ChooseMotion(view, 2), InternalError);  // nobody inside decides
+
+  view.previous_scs = 0.9;
+  EXPECT_TRUE(controller.Observe(view, 3).hover);
+  EXPECT_TRUE(controller.Take(view, {.displacement_m = {5, 5, 5}}).command.hover);
+  EXPECT_TRUE(controller.Observe(view, 4).complete);
 }
 
 TEST_F(GreedyTest, AReliableDetectionHovers) {
@@ -122,11 +145,11 @@ TEST_F(GreedyTest, TheRobotTakesTheBestAllowedAction) {
     const ExecutionDecision decision = robot.ChooseExecution(view, 0.0, 1);
     EXPECT_FALSE(decision.random);
     for (const Execution execution : {Execution::kOffload, Execution::kFull, Execution::kQuantized}) {
-      if (FindStrategy(name).allowed.Allows(execution)) {
+      if (FindStrategy(name).execution.allowed.Allows(execution)) {
         EXPECT_LE(rewards[static_cast<std::size_t>(execution)], decision.predicted_reward) << name;
       }
     }
-    EXPECT_TRUE(FindStrategy(name).allowed.Allows(decision.execution));
+    EXPECT_TRUE(FindStrategy(name).execution.allowed.Allows(decision.execution));
   }
 }
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "engine/agents/robot_agent.h"
+#include "engine/agents/strategies/rbs_execution.h"
 
 namespace ed3r {
 namespace {

@@ -15,9 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::map<std::string, FuzzFunction> kTargets = {
-    {"sweep", FuzzSweep}, {"world", FuzzWorld},          {"grid", FuzzGrid}, {"stem_map", FuzzStemMap},
-    {"log", FuzzLog},     {"log_format", FuzzLogFormat}, {"npy", FuzzNpy},   {"picture", FuzzPicture},
-    {"onnx", FuzzOnnx},   {"model", FuzzModel}};
+    {"sweep", FuzzSweep}, {"world", FuzzWorld},          {"grid", FuzzGrid},  {"stem_map", FuzzStemMap},
+    {"log", FuzzLog},     {"log_format", FuzzLogFormat}, {"npy", FuzzNpy},    {"picture", FuzzPicture},
+    {"onnx", FuzzOnnx},   {"network", FuzzNetwork},      {"model", FuzzModel}};
 
 TEST(CorpusTest, EveryFileIsReadOrRefused) {
   for (const auto& [name, target] : kTargets) {

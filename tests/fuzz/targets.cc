@@ -11,6 +11,7 @@
 #include "engine/core/sha256.h"
 #include "engine/perception/vision/model_file.h"
 #include "engine/perception/vision/onnx_gate.h"
+#include "engine/rfnn/onnx_graph.h"
 #include "engine/sweep/sweep_file.h"
 #include "engine/world/picture_file.h"
 #include "engine/world/stem_map.h"
@@ -111,6 +112,10 @@ void FuzzPicture(std::string_view bytes) {
 
 void FuzzOnnx(std::string_view bytes) {
   Refusable([&] { CheckOnnx(bytes, "x.onnx"); });
+}
+
+void FuzzNetwork(std::string_view bytes) {
+  Refusable([&] { ParseOnnxGraph(bytes, "x.onnx"); });
 }
 
 // The bytes are the payload: what whoever seals a file himself may put into it.

@@ -19,6 +19,7 @@ void FuzzLogFormat(std::string_view bytes);
 void FuzzNpy(std::string_view bytes);
 void FuzzPicture(std::string_view bytes);
 void FuzzOnnx(std::string_view bytes);
+void FuzzNetwork(std::string_view bytes);
 void FuzzModel(std::string_view bytes);
 
 }  // namespace ed3r

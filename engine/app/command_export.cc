@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "engine/app/commands.h"
+#include "engine/app/words.h"
+#include "engine/core/check.h"
+#include "engine/core/file.h"
+#include "engine/rfnn/model_file.h"
+#include "engine/rfnn/onnx_network.h"
+#include "engine/store/reader.h"
+#include "studies/export/export_tables.h"
+
+namespace ed3r {
+namespace {
+
+struct Options {
+  std::string dir, out;
+  bool csv = false, numpy = false, networks = false;
+};
+
+// "rc from random, eta_min 0.75, seed 1" -> "rc-from-random-eta_min-0.75-seed-1.onnx"
+std::string FileName(const std::string& network) {
+  std::string name;
+  for (const char c : network) {
+    const bool kept = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
+    if (kept) name += c;
+    if (!kept && !name.empty() && name.back() != '-') name += '-';
+  }
+  return name + ".onnx";
+}
+
+void ExportNetworks(ResultReader& reader, const std::filesystem::path& folder) {
+  const FlownNetworks flown = reader.Networks();
+  if (flown.files.empty())
+    throw UserError(fmt::format("{}: --networks: no trained network flew here", reader.dir()));
+  MakeFolder(folder);
+  std::set<std::string> done;
+  for (const NetworkUse& use : flown.uses) {
+    if (!done.insert(use.sha256).second) continue;
+    const NetworkFile& file = flown.files.at(use.sha256);
+    const Model model = OpenModel(file.model, fmt::format("{}: network '{}'", reader.dir(), file.name),
+                                  use.agent == "rc" ? kRcNetwork : kRobotNetwork);
+    const std::filesystem::path path = folder / FileName(file.name);
+    WriteFile(path, OnnxBytes(model));
+    fmt::print("{}: {}\n", path.string(), file.name);
+  }
+}
+
+int Export(const Options& options) {
+  if (!options.csv && !options.numpy && !options.networks)
+    throw UserError("ed3r export: nothing to write; allowed: --csv, --numpy, --networks, or several");
+  ResultReader reader(options.dir);
+  const std::filesystem::path folder = options.out.empty() ? std::filesystem::path(options.dir) / "export"
+                                                           : std::filesystem::path(options.out);
+  const auto tables = [&](ExportFormat format) {
+    for (const ExportedTable& table : ExportTables(reader, format, folder))
+      fmt::print("{}: {}\n", table.file.string(), Counted(table.rows, "row"));
+  };
+  if (options.csv) tables(ExportFormat::kCsv);
+  if (options.numpy) tables(ExportFormat::kNumpy);
+  if (options.networks) ExportNetworks(reader, folder);
+  return kDone;
+}
+
+}  // namespace
+
+Command AddExport(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* parser = program.add_subcommand(
+      "export", "Missions and timesteps as tables for other tools, networks as ONNX files");
+  parser->add_option("DIR", options->dir, "Run directory")->required();
+  parser->add_flag("--csv", options->csv, "missions.csv and timesteps.csv");
+  parser->add_flag("--numpy", options->numpy, "missions.npy and timesteps.npy: structured arrays");
+  parser->add_flag("--networks", options->networks,
+                   "The networks that flew, for networks.rc and networks.robot of another sweep");
+  parser->add_option("--out", options->out, "Folder to write to; default DIR/export")->check(NotEmpty());
+  parser->footer(
+      "Columns have their units in their names; stage, arm, outcome, motion_rule and execution are words. "
+      "Parquet is not "
+      "written: Debian 12 packages no library for it.");
+  return {parser, [options] { return Export(*options); }};
+}
+
+}  // namespace ed3r

@@ -1,0 +1,139 @@
+"""ED3R from Python. Shapes: N missions side by side (num_envs). Units are in the names, or said."""
+
+import enum
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+OFFLOAD: int
+"""0: detection at the remote controller, with the Full model; costs radio time and energy."""
+FULL: int
+"""1: detection on board with the Full model."""
+QUANTIZED: int
+"""2: detection on board with the Quantized model."""
+
+class UserError(ValueError):
+    """Bad input, in one line: where, what was found, what is allowed."""
+
+class InternalError(RuntimeError):
+    """A defect of the engine, not of its input."""
+
+class AutoresetMode(enum.Enum):
+    """gymnasium.vector.AutoresetMode, or its twin where Gymnasium is not installed."""
+
+    NEXT_STEP = ...
+    SAME_STEP = ...
+    DISABLED = ...
+
+class VectorEnv:
+    """`num_envs` missions of one arm of a sweep, stepped side by side; Gymnasium's vector interface.
+
+    A timestep has the paper's two stages. `step` takes both decisions at once; `move` and then `detect` take them one
+    after the other, so that the second knows what the robot sees after the move. step(a) is move(a[:, :5]) and then
+    detect(floor(a[:, 5])).
+
+    observation  float32 (N, 8), what the remote controller sees, raw (`controller_features`): x_m, y_m, z_m (east, north,
+                 up, of the world), yaw_rad (0 east, counter-clockwise), tilt_rad (camera below the horizon), rc_distance_m,
+                 previous_scs (score of the last look, 0 .. 1), previous_energy_j
+    action       float32 (N, 6): dx_m, dy_m, dz_m, turn_rad, tilt_rad (set-point), and the execution, of which the whole
+                 part counts: 0 offload, 1 full, 2 quantized
+    robot_obs    float32 (N, 9), what the robot sees after its move (`robot_features`): yaw_rad, tilt_rad, battery_ratio,
+                 cpu_ratio, rc_distance_m, bandwidth_hz, rate_bps, previous_scs, previous_energy_j
+    reward       float64 (N,), Eq. 21 of the paper: energy, confidence and constraints, always below 0
+    terminated   the mission is complete (success or false alarm) or the battery cannot pay; truncated: mission.max_timesteps
+
+    The remote controller follows the paper's Algorithm (unless agents.early_completion is off): where the last look was
+    reliable the robot hovers, whatever the command (infos["hovers"] says so before), commands are cut to infos["ranges"],
+    and after two reliable looks in a row the mission ends.
+
+    infos: arrays (N, ...), each with a mask "_name" of the rows that have it. Of the step: outcome (-1 until it ends;
+    Run.codes["outcome"]), execution, scs, duration_s, movement_j (hovering included), sensing_j, computation_j,
+    transmission_j, total_j, battery_j, robot_obs. Of the mission under way: mission (its number), timestep (from 1),
+    hovers, ranges (N, 3: largest |dx|, |dy|, |dz| in m; largest |turn| in rad; width of the tilt interval in rad).
+
+    Autoreset as Gymnasium defines it. NEXT_STEP: the step after the end begins the row's next mission and flies nothing
+    (reward 0, its mask is False). SAME_STEP: the step that ends a mission begins the next; infos["final_obs"] and
+    infos["final_info"] hold the end, with masks. DISABLED: the row waits for reset(options={"reset_mask": mask}).
+
+    Row i flies missions i, i + N, i + 2N, ... of the arm: a mission depends on sweep, seed, number and actions alone, not on
+    N, threads, or what the other rows do. The interpreter lock is released while missions fly; one thread uses an
+    environment at a time.
+
+    sweep: path of a sweep file. arm: "ARM" or "STAGE/ARM", not needed where there is one; its world and parameters count, its
+    strategy does not. seed: in place of the file's. settings: ["key=value", ...] as 'ed3r run --set'. threads: 0 for all
+    processors. copy: False hands out views of the engine's memory, read-only and overwritten by the next step.
+    """
+
+    num_envs: int
+    arm: str
+    controller_features: tuple[str, ...]
+    robot_features: tuple[str, ...]
+    metadata: dict[str, Any]
+    single_observation_space: Any
+    observation_space: Any
+    single_action_space: Any
+    action_space: Any
+
+    def __init__(self, sweep: str | os.PathLike[str], arm: str = "", num_envs: int = 1, seed: int | None = None, *,
+                 autoreset_mode: AutoresetMode | str = ..., threads: int = 0, settings: Sequence[str] = (),
+                 copy: bool = True) -> None: ...
+    def reset(self, *, seed: int | None = None,
+              options: Mapping[str, Any] | None = None) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begins the next mission of every row, or of those in options["reset_mask"]; with a seed, that seed's first ones."""
+    def step(self, actions: ArrayLike) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_],
+                                                NDArray[np.bool_], dict[str, Any]]:
+        """One timestep: observations (N, 8), rewards, terminations, truncations (N,), infos."""
+    def move(self, commands: ArrayLike) -> NDArray[np.float32]:
+        """Stage 1: flies commands (N, 5); returns robot_obs (N, 9)."""
+    def detect(self, executions: ArrayLike) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_],
+                                                     NDArray[np.bool_], dict[str, Any]]:
+        """Stage 2: executions (N,) of 0, 1, 2; returns what step returns."""
+    def close(self) -> None: ...
+
+class TwoStagePolicy(Protocol):
+    """The two decisions of a timestep, one after the other."""
+
+    def move(self, obs: NDArray[np.float32], info: dict[str, Any]) -> ArrayLike: ...
+    def detect(self, robot_obs: NDArray[np.float32], info: dict[str, Any]) -> ArrayLike: ...
+
+Policy = Callable[[NDArray[np.float32], dict[str, Any]], ArrayLike] | TwoStagePolicy
+
+def fly(sweep: str | os.PathLike[str], policy: Policy | Mapping[str, Policy], out: str | os.PathLike[str] | None = None, *,
+        seed: int | None = None, missions: int | None = None, settings: Sequence[str] = (), num_envs: int = 64,
+        threads: int = 0, version: str | None = None, cache: str = "results/cache") -> "Run":
+    """Flies what is missing of a sweep, as 'ed3r run' does; its arms of `strategy: external` decide by `policy`.
+
+    policy(obs, info) gets obs (n, 8) and info of n <= num_envs missions and returns actions (n, 6), as of VectorEnv. info:
+    mission, timestep, hovers, scs, total_j, battery_j (n,), ranges (n, 3). Missions come and go between calls: what a policy
+    remembers must hang on info["mission"], and what it draws on mission and timestep, or results depend on num_envs. An
+    object with move(obs, info) -> (n, 5) and detect(robot_obs, info) -> (n,) decides in two stages; a dict gives one policy
+    to each arm.
+
+    Results go to `out` (results/runs/SWEEP) as ordinary missions: reports, pairing by scenario and comparisons know no
+    difference. A second call continues; by another policy it is refused. `version` tells policies apart; without it the
+    SHA-256 of the policy's source does, so give one where it depends on more than its source (weights, a closure).
+    """
+
+class Run:
+    """A run directory; every mission that is read is compared with its checksum."""
+
+    codes: dict[str, dict[int, str]]
+    """What stored codes stand for: {"outcome": {0: "success", ...}, "execution": ..., "motion_rule": ...}."""
+    dir: str
+    name: str
+    arms: list[dict[str, Any]]
+    """[{"stage", "arm", "planned", "done", "failed"}, ...] in the plan's order."""
+
+    def __init__(self, dir: str | os.PathLike[str]) -> None: ...
+    def missions(self, arm: str = "", *, frame: bool = False) -> Any:
+        """One row a mission, of one arm ("ARM", "STAGE/ARM") or all: {"arm", "mission", "scenario", "outcome", "total_j",
+        "duration_s", ...: array}; units are in the names. frame: as a pandas.DataFrame."""
+    def steps(self, arm: str = "", *, frame: bool = False) -> Any:
+        """One row a timestep, likewise: {"arm", "mission", "k", "x_m", "scs", "total_j", "reward", ...}."""
+    def report(self) -> dict[str, Any]:
+        """What 'ed3r report DIR --json' prints: metrics of each arm with 95 % intervals, verdicts on the claims."""
+    def digest(self) -> str:
+        """The hash over all results, as 'ed3r digest DIR'."""

@@ -1,0 +1,50 @@
+"""Results of a run directory as arrays."""
+
+import json
+
+import numpy as np
+
+from . import _core
+
+
+class Run:
+    """A run directory; see the stub."""
+
+    codes = _core.code_names()
+
+    def __init__(self, dir):
+        self.dir = str(dir)
+        self._reader = _core.RunReader(self.dir)
+
+    @property
+    def name(self):
+        return self._reader.name
+
+    @property
+    def arms(self):
+        return [{"stage": a.stage, "arm": a.arm, "planned": a.planned, "done": a.done, "failed": a.failed}
+                for a in self._reader.arms()]
+
+    def missions(self, arm="", *, frame=False):
+        return self._table(self._reader.missions(arm), frame)
+
+    def steps(self, arm="", *, frame=False):
+        return self._table(self._reader.steps(arm), frame)
+
+    def report(self):
+        return json.loads(self._reader.report_json())
+
+    def digest(self):
+        return self._reader.digest()
+
+    def _table(self, columns, frame):
+        names = np.array([a.arm for a in self._reader.arms()])
+        columns["arm"] = names[columns["arm"]]
+        if not frame:
+            return columns
+        import pandas
+
+        return pandas.DataFrame(columns)
+
+    def __repr__(self):
+        return f"<ed3r.Run {self.name} in {self.dir}>"

@@ -1,0 +1,100 @@
+#include "engine/python/results.h"
+
+#include <fmt/format.h>
+
+#include <type_traits>
+
+#include "engine/core/check.h"
+#include "engine/core/suggest.h"
+#include "engine/store/columns.h"
+#include "engine/store/digest.h"
+#include "engine/store/words.h"
+#include "studies/report/load.h"
+#include "studies/report/report.h"
+
+namespace ed3r {
+namespace {
+
+template <class Record>
+std::vector<ResultColumn> EmptyTable() {
+  std::vector<ResultColumn> table = {{.name = "arm"}, {.name = "mission"}};
+  for (const Column& column : ColumnsOf<Record>())
+    table.push_back({.name = column.name, .is_real = column.is_real});
+  return table;
+}
+
+template <class Record>
+void AddRow(std::int64_t arm, std::int64_t mission, const Record& record, std::vector<ResultColumn>& table) {
+  table[0].integers.push_back(arm);
+  table[1].integers.push_back(mission);
+  std::size_t next = 2;
+  Record::Describe(record, [&](std::string_view, const auto& field) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, double>)
+      table[next++].reals.push_back(field);
+    else
+      table[next++].integers.push_back(field);
+  });
+}
+
+}  // namespace
+
+std::vector<ArmCount> RunReader::Arms() {
+  std::vector<ArmCount> arms;
+  for (const ArmStatus& arm : reader_.Status())
+    arms.push_back({arm.stage, arm.arm, arm.planned, arm.done, arm.failed});
+  return arms;
+}
+
+// (stage, arm) of what was asked for; RunId::mission is the arm's place in Arms().
+std::vector<RunId> RunReader::Selected(const std::string& arm) const {
+  std::vector<RunId> selected;
+  std::vector<std::string> names;
+  const RunLayout& layout = reader_.Layout();
+  int place = 0;
+  for (std::size_t s = 0; s < layout.stages.size(); ++s)
+    for (std::size_t a = 0; a < layout.stages[s].arms.size(); ++a) {
+      const std::string& name = layout.stages[s].arms[a].name;
+      names.push_back(name);
+      if (arm.empty() || arm == name || arm == layout.stages[s].name + "/" + name)
+        selected.push_back({static_cast<int>(s), static_cast<int>(a), place});
+      ++place;
+    }
+  if (selected.empty()) {
+    const std::string nearest = NearestWord(arm, names);
+    throw UserError(fmt::format("{}: no arm '{}'; the arms are {}{}", reader_.dir(), arm,
+                                fmt::join(names, ", "),
+                                nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest)));
+  }
+  return selected;
+}
+
+std::vector<ResultColumn> RunReader::Missions(const std::string& arm) {
+  std::vector<ResultColumn> table = EmptyTable<MissionRecord>();
+  for (const RunId& id : Selected(arm))
+    reader_.ForEachMission(id.stage, id.arm, Steps::kSkip, [&](const StoredMission& mission) {
+      AddRow(id.mission, mission.id.mission, mission.record, table);
+    });
+  return table;
+}
+
+std::vector<ResultColumn> RunReader::Timesteps(const std::string& arm) {
+  std::vector<ResultColumn> table = EmptyTable<TimestepRecord>();
+  for (const RunId& id : Selected(arm))
+    reader_.ForEachTimestep(id.stage, id.arm, [&](int mission, const TimestepRecord& step) {
+      AddRow(id.mission, mission, step, table);
+    });
+  return table;
+}
+
+std::string RunReader::ReportText() const { return ReportJson(MakeReport(LoadRun(reader_.dir()))).dump(); }
+
+std::string RunReader::Digest() { return DigestOf(reader_); }
+
+std::map<std::string, std::map<std::int64_t, std::string>> CodeNames() {
+  std::map<std::string, std::map<std::int64_t, std::string>> names;
+  for (const std::string column : {"outcome", "execution", "motion_rule"})
+    for (const auto& [code, word] : WordsOf(column)) names[column][code] = std::string(word);
+  return names;
+}
+
+}  // namespace ed3r

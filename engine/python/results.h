@@ -1,0 +1,51 @@
+// Stored results by column.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/store/reader.h"
+
+namespace ed3r {
+
+// One column of a table: integers or reals.
+struct ResultColumn {
+  std::string name;
+  bool is_real = false;
+  std::vector<std::int64_t> integers = {};
+  std::vector<double> reals = {};
+};
+
+struct ArmCount {
+  std::string stage, arm;
+  std::int64_t planned = 0, done = 0, failed = 0;
+};
+
+// Reads a run directory; every mission is compared with its checksum. Throws UserError.
+class RunReader {
+ public:
+  explicit RunReader(const std::string& dir) : reader_(dir) {}
+
+  const std::string& Name() const { return reader_.Layout().name; }
+  std::vector<ArmCount> Arms();
+
+  // Of the arm "ARM" or "STAGE/ARM", or of all ("") in plan order. The columns "arm" (index into Arms()) and "mission",
+  // then those of MissionRecord or TimestepRecord.
+  std::vector<ResultColumn> Missions(const std::string& arm);
+  std::vector<ResultColumn> Timesteps(const std::string& arm);
+
+  std::string ReportText() const;  // the JSON of 'ed3r report --json'
+  std::string Digest();
+
+ private:
+  std::vector<RunId> Selected(const std::string& arm) const;
+
+  ResultReader reader_;
+};
+
+// What the codes of stored columns stand for: {"outcome": {0: "success", ...}, ...}.
+std::map<std::string, std::map<std::int64_t, std::string>> CodeNames();
+
+}  // namespace ed3r

@@ -1,0 +1,95 @@
+#include "engine/python/sweeps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "engine/agents/strategy.h"
+#include "engine/core/check.h"
+#include "engine/python/fleets.h"
+#include "engine/schedule/sweep_runner.h"
+#include "engine/sweep/sweep_file.h"
+#include "studies/metrics/definitions.h"
+#include "studies/report/load.h"
+
+namespace ed3r {
+namespace {
+
+std::map<std::string, std::string> NotesOf(const SweepRequest& request, const FlightPlace& place) {
+  return {{"sweep file", std::filesystem::absolute(request.file).lexically_normal().string()},
+          {"sweep --set", fmt::format("{}", fmt::join(request.settings, "\n"))},
+          {"sweep --seed", request.seed ? fmt::format("{}", *request.seed) : ""},
+          {"sweep --missions", request.missions ? fmt::format("{}", *request.missions) : ""},
+          {"policy", place.policy_identity}};
+}
+
+// Missions of `todo`, row by row, as a fleet; each that has ended is offered.
+std::shared_ptr<FleetHandle> FleetOf(const SweepPlan& plan, const Inputs& inputs, const Arm& arm,
+                                     const std::vector<RunId>& todo, const FlightPlace& place,
+                                     const OfferFn& offer, const std::atomic<bool>& stop) {
+  const std::size_t rows = std::min(place.rows, todo.size());
+  auto handle = std::make_shared<FleetHandle>();
+  handle->arm = arm.name;
+  handle->config = arm.config;
+  handle->stop = &stop;
+  const auto task = [&plan, &inputs, &todo, rows](std::size_t row, std::int64_t nth) {
+    const std::size_t at = row + static_cast<std::size_t>(nth) * rows;
+    return at < todo.size() ? std::optional(TaskOf(plan, inputs, nullptr, todo[at])) : std::nullopt;
+  };
+  handle->fleet = std::make_shared<Fleet>(rows, task, place.threads, Autoreset::kSameStep);
+  handle->fleet->OnRecord(
+      [&offer, id = todo.front()](const MissionTask& flown, std::optional<MissionRecord> record) {
+        const bool ended = record.has_value();
+        offer({id.stage, id.arm, flown.mission}, std::move(record), ended ? "" : "the mission does not end");
+      });
+  return handle;
+}
+
+}  // namespace
+
+SweepPlan LoadRequest(const SweepRequest& request) {
+  SweepOverrides overrides;
+  overrides.set = request.settings;
+  overrides.seed = request.seed;
+  if (request.missions) {
+    if (*request.missions < 1)
+      throw UserError(
+          fmt::format("missions: {} is not allowed; allowed: 1 .. {}", *request.missions, kMaxMissions));
+    overrides.missions.push_back({"", *request.missions});
+  }
+  return LoadSweep(request.file, overrides, [](const std::string& key, const std::string& value) {
+    if (key == "precision.metric") return CheckMetricName(value);
+    return key == "mission.strategy" ? CheckStrategyName(value) : std::string();
+  });
+}
+
+FlightCount FlyWithPolicy(const SweepRequest& request, const FlightPlace& place, const DriveFn& drive) {
+  if (place.rows < 1) throw UserError("num_envs: 0 is not allowed; allowed: 1 or more");
+  const SweepPlan plan = LoadRequest(request);
+  const Inputs inputs(plan);
+  SweepOptions options;
+  options.dir = place.out;
+  options.cache_dir = place.cache;
+  options.schedule.threads = place.threads;
+  options.schedule.quiet = true;
+  options.half_width = HalfWidth;
+  options.notes = NotesOf(request, place);
+  options.outside_identity = place.policy_identity;
+  options.outside = [&](const Arm& arm, const std::vector<RunId>& todo, const OfferFn& offer,
+                        const std::atomic<bool>& stop) {
+    const std::shared_ptr<FleetHandle> fleet = FleetOf(plan, inputs, arm, todo, place, offer, stop);
+    // Python may hold the fleet's arrays for longer than the plan lives.
+    struct Retire {
+      FleetHandle& handle;
+      ~Retire() { handle.fleet->Retire(), handle.stop = nullptr; }
+    } const retire{*fleet};
+    fleet->fleet->Reset();
+    drive(fleet);
+  };
+  const SweepSummary summary = RunSweep(plan, inputs, options);
+  return {summary.flown.stored, summary.flown.failed};
+}
+
+}  // namespace ed3r

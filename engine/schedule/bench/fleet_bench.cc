@@ -1,0 +1,149 @@
+// What stepping missions from outside costs beside the closed loop: the same missions of the rule look-level, flown by
+// FlyMission, as 'ed3r run' does, and stepped by a Fleet of some rows that takes the same decisions.
+//   build/bench/engine/schedule/fleet_bench SWEEP MISSIONS THREADS ROWS...
+// The sweep's first arm gives world and parameters. One line per number of rows: decisions a second (two a timestep),
+// simulated seconds a second, and the closed loop's time over the fleet's. Both take turns three times; the best counts.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "engine/agents/features.h"
+#include "engine/agents/strategies/look_level.h"
+#include "engine/core/check.h"
+#include "engine/schedule/fleet.h"
+#include "engine/schedule/inputs.h"
+#include "engine/schedule/parallel_for.h"
+#include "engine/schedule/sweep_runner.h"
+#include "engine/sweep/sweep_file.h"
+
+namespace ed3r {
+namespace {
+
+struct Flown {
+  double wall_s = 0, simulated_s = 0;
+  std::int64_t timesteps = 0;
+};
+
+double Seconds(std::chrono::steady_clock::time_point since) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+}
+
+MissionTask TaskFor(const Scene& scene, const Config& config, std::int64_t mission) {
+  MissionTask task{.scene = scene, .config = config};
+  task.seed = 1;
+  task.scenario = static_cast<std::uint32_t>(mission);
+  task.mission = static_cast<int>(mission);
+  return task;
+}
+
+Flown ClosedLoop(const Scene& scene, const Config& config, std::int64_t missions, int threads) {
+  std::vector<MissionRecord> records(static_cast<std::size_t>(missions));
+  const auto begin = std::chrono::steady_clock::now();
+  ParallelFor(threads, missions, [&](std::int64_t i) {
+    records[static_cast<std::size_t>(i)] = FlyMission(TaskFor(scene, config, i));
+  });
+  Flown flown{.wall_s = Seconds(begin)};
+  for (const MissionRecord& record : records) {
+    flown.simulated_s += record.duration_s;
+    flown.timesteps += record.timesteps;
+  }
+  return flown;
+}
+
+// The view that a row of the fleet shows.
+RcView ViewOf(const float* seen) {
+  RcView view;
+  view.pose = {{seen[kRcX], seen[kRcY], seen[kRcZ]}, seen[kRcYaw], seen[kRcTilt]};
+  view.previous_scs = seen[kRcPreviousScs];
+  return view;
+}
+
+Flown Stepped(const Scene& scene, const Config& config, std::int64_t missions, int threads,
+              std::size_t rows) {
+  std::vector<std::unique_ptr<LookLevel>> rules(rows);
+  const auto task = [&](std::size_t row, std::int64_t nth) -> std::optional<MissionTask> {
+    const auto mission = static_cast<std::int64_t>(row) + nth * static_cast<std::int64_t>(rows);
+    if (mission >= missions) return std::nullopt;
+    return TaskFor(scene, config, mission);
+  };
+  const AgentContext context{config, FindStrategy("look-level"), {}, scene.SizeM()};
+  Fleet fleet(rows, task, threads, Autoreset::kSameStep);
+  Flown flown;
+  fleet.OnRecord([&](const MissionTask&, std::optional<MissionRecord> record) {
+    flown.simulated_s += record->duration_s;
+    flown.timesteps += record->timesteps;
+  });
+  std::vector<float> commands(rows * kCommandValues);
+  const std::vector<std::int64_t> executions(rows, static_cast<std::int64_t>(Execution::kQuantized));
+  const auto begin = std::chrono::steady_clock::now();
+  fleet.Reset();
+  const FleetColumns& now = fleet.Now();
+  while (std::any_of(now.mission.begin(), now.mission.end(), [](std::int64_t m) { return m >= 0; })) {
+    for (std::size_t row = 0; row < rows; ++row) {
+      if (now.mission[row] < 0 || now.hovers[row] != 0) continue;
+      if (now.timestep[row] == 1) rules[row] = std::make_unique<LookLevel>(context);
+      const RcView view = ViewOf(now.controller.data() + row * kRcStates);
+      const float* ranges = now.ranges.data() + row * 3;
+      const MotionCommand command =
+          rules[row]->Choose({.view = view, .ranges = {ranges[0], ranges[1], ranges[2]}}).command;
+      const RcAction action = ActionOf(command);
+      std::copy(action.begin(), action.end(),
+                commands.begin() + static_cast<std::ptrdiff_t>(row * kCommandValues));
+    }
+    fleet.Move(commands);
+    fleet.Detect(executions);
+  }
+  flown.wall_s = Seconds(begin);
+  return flown;
+}
+
+void Bench(const std::string& sweep, std::int64_t missions, int threads,
+           const std::vector<std::size_t>& all_rows) {
+  SweepPlan plan = LoadSweep(sweep);
+  Stage& stage = plan.stages.front();
+  stage.arms.resize(1);
+  stage.arms.front().config.mission.strategy = "look-level";
+  plan.stages.resize(1);
+  const Inputs inputs(plan);
+  const Config closed = stage.arms.front().config;
+  Config outside = closed;
+  outside.mission.strategy = kOutsideStrategy;
+  const Scene& scene = inputs.SceneOf(closed);
+  const auto tell = [&](const std::string& what, const Flown& flown, double closed_s) {
+    fmt::print(
+        "{:<14} {:>2} threads  {:>9.0f} decisions/s  {:>9.0f} simulated s/s  {:.3f} of the closed loop\n",
+        what, threads, 2.0 * static_cast<double>(flown.timesteps) / flown.wall_s,
+        flown.simulated_s / flown.wall_s, closed_s / flown.wall_s);
+  };
+  for (const std::size_t rows : all_rows) {
+    Flown best_closed{.wall_s = std::numeric_limits<double>::infinity()}, best_stepped = best_closed;
+    for (int turn = 0; turn < 3; ++turn) {
+      const Flown loop = ClosedLoop(scene, closed, missions, threads);
+      const Flown stepped = Stepped(scene, outside, missions, threads, rows);
+      if (loop.wall_s < best_closed.wall_s) best_closed = loop;
+      if (stepped.wall_s < best_stepped.wall_s) best_stepped = stepped;
+    }
+    tell("closed loop", best_closed, best_closed.wall_s);
+    tell(fmt::format("{} rows", rows), best_stepped, best_closed.wall_s);
+  }
+}
+
+}  // namespace
+}  // namespace ed3r
+
+int main(int argc, char** argv) {
+  if (argc < 5) {
+    fmt::print(stderr, "fleet_bench SWEEP MISSIONS THREADS ROWS...\n");
+    return 2;
+  }
+  std::vector<std::size_t> rows;
+  for (int i = 4; i < argc; ++i) rows.push_back(static_cast<std::size_t>(std::atoll(argv[i])));
+  ed3r::Bench(argv[1], std::atoll(argv[2]), std::atoi(argv[3]), rows);
+  return 0;
+}

@@ -1,0 +1,184 @@
+#include "studies/export/export_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "engine/core/file.h"
+#include "engine/store/columns.h"
+#include "engine/store/words.h"
+#include "studies/paper/csv.h"
+
+namespace ed3r {
+namespace {
+
+// "code 9" for one that this version does not know.
+std::string WordOf(std::string_view column, std::int64_t code) {
+  for (const auto& [known, word] : WordsOf(column))
+    if (known == code) return std::string(word);
+  return fmt::format("code {}", code);
+}
+
+struct RowKey {
+  std::string_view stage, arm;
+  std::int64_t mission = 0;
+};
+
+// One table on its way into a file.
+class TableFile {
+ public:
+  virtual ~TableFile() = default;
+  virtual void Word(std::string_view word) = 0;
+  virtual void Integer(std::int64_t value) = 0;
+  virtual void Real(double value) = 0;
+  virtual void EndRow() = 0;
+  virtual void Commit() = 0;
+};
+
+class CsvFile : public TableFile {
+ public:
+  CsvFile(const std::filesystem::path& path, const std::vector<Column>& columns) : file_(path) {
+    for (const Column& column : columns) Word(column.name);
+    EndRow();
+  }
+  void Word(std::string_view word) override { Field(CsvField(word)); }
+  void Integer(std::int64_t value) override { Field(fmt::format("{}", value)); }
+  void Real(double value) override { Field(std::isnan(value) ? "" : fmt::format("{}", value)); }
+  void EndRow() override {
+    file_.Write(row_ + "\n");
+    row_.clear();
+    first_ = true;
+  }
+  void Commit() override { file_.Commit(); }
+
+ private:
+  void Field(std::string_view text) {
+    if (!first_) row_ += ',';
+    first_ = false;
+    row_ += text;
+  }
+
+  AtomicFile file_;
+  std::string row_;
+  bool first_ = true;
+};
+
+// Format 1.0 of numpy.lib.format: a header of Python text, padded to 64 bytes, then the rows, packed.
+class NumpyFile : public TableFile {
+ public:
+  // `width`: characters of a word.
+  NumpyFile(const std::filesystem::path& path, const std::vector<Column>& columns, std::int64_t rows,
+            std::size_t width)
+      : file_(path), width_(width) {
+    std::string fields;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const bool word = i < 2 || !WordsOf(columns[i].name).empty();
+      fields += fmt::format("('{}', '{}'), ", columns[i].name,
+                            word                 ? fmt::format("<U{}", width)
+                            : columns[i].is_real ? "<f8"
+                                                 : "<i8");
+    }
+    std::string header =
+        fmt::format("{{'descr': [{}], 'fortran_order': False, 'shape': ({},)}}", fields, rows);
+    constexpr std::size_t kBefore = 12, kAlign = 64;
+    header.append(kAlign - (kBefore + header.size() + 1) % kAlign, ' ');
+    header += '\n';
+    const auto size = static_cast<std::uint32_t>(header.size());
+    std::string start("\x93NUMPY\x02\x00", 8);
+    for (int i = 0; i < 4; ++i) start += static_cast<char>(size >> (8 * i));
+    file_.Write(start + header);
+  }
+  void Word(std::string_view word) override {
+    for (std::size_t i = 0; i < width_; ++i) {  // names are ASCII: a character is a code point of four bytes
+      row_ += i < word.size() ? word[i] : '\0';
+      row_.append(3, '\0');
+    }
+  }
+  void Integer(std::int64_t value) override { AppendInt(row_, value); }
+  void Real(double value) override { AppendInt(row_, std::bit_cast<std::int64_t>(value)); }
+  void EndRow() override {
+    file_.Write(row_);
+    row_.clear();
+  }
+  void Commit() override { file_.Commit(); }
+
+ private:
+  AtomicFile file_;
+  const std::size_t width_;
+  std::string row_;
+};
+
+template <class Record>
+void WriteRow(const RowKey& key, const Record& record, TableFile& table) {
+  table.Word(key.stage), table.Word(key.arm), table.Integer(key.mission);
+  Record::Describe(record, [&](std::string_view name, const auto& field) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, double>) {
+      table.Real(field);
+    } else if (!WordsOf(name).empty()) {
+      table.Word(WordOf(name, field));
+    } else {
+      table.Integer(field);
+    }
+  });
+  table.EndRow();
+}
+
+std::size_t LongestWord(const RunLayout& layout) {
+  std::size_t longest = 0;
+  const auto see = [&](std::string_view word) { longest = std::max(longest, word.size()); };
+  for (const RunLayout::Stage& stage : layout.stages) {
+    see(stage.name);
+    for (const RunLayout::Arm& arm : stage.arms) see(arm.name);
+  }
+  for (const std::string_view column : {"outcome", "motion_rule", "execution"})
+    for (const auto& [code, word] : WordsOf(column)) see(word);
+  return longest;
+}
+
+template <class Record>
+std::unique_ptr<TableFile> Open(ExportFormat format, const std::filesystem::path& stem, std::int64_t rows,
+                                std::size_t width, ExportedTable& written) {
+  std::vector<Column> columns = {{"stage"}, {"arm"}, {"mission"}};
+  for (const Column& column : ColumnsOf<Record>()) columns.push_back(column);
+  written = {stem.string() + (format == ExportFormat::kCsv ? ".csv" : ".npy"), rows};
+  if (format == ExportFormat::kCsv) return std::make_unique<CsvFile>(written.file, columns);
+  return std::make_unique<NumpyFile>(written.file, columns, rows, width);
+}
+
+}  // namespace
+
+std::vector<ExportedTable> ExportTables(ResultReader& reader, ExportFormat format,
+                                        const std::filesystem::path& folder) {
+  MakeFolder(folder);
+  std::int64_t missions = 0, timesteps = 0;
+  reader.ForEachMission(Steps::kSkip, [&](const StoredMission& mission) {
+    ++missions;
+    timesteps += mission.record.timesteps;
+  });
+  const RunLayout layout = reader.Layout();
+  const std::size_t width = LongestWord(layout);
+  std::vector<ExportedTable> written(2);
+  const auto mission_table = Open<MissionRecord>(format, folder / "missions", missions, width, written[0]);
+  const auto step_table = Open<TimestepRecord>(format, folder / "timesteps", timesteps, width, written[1]);
+  std::int64_t seen = 0;
+  reader.ForEachMission(Steps::kLoad, [&](const StoredMission& mission) {
+    if (++seen > missions) return;  // stored since they were counted
+    const RunLayout::Stage& stage = layout.stages[static_cast<std::size_t>(mission.id.stage)];
+    const RowKey key{stage.name, stage.arms[static_cast<std::size_t>(mission.id.arm)].name,
+                     mission.id.mission};
+    WriteRow(key, mission.record, *mission_table);
+    for (const TimestepRecord& step : mission.record.steps) WriteRow(key, step, *step_table);
+  });
+  mission_table->Commit();
+  step_table->Commit();
+  return written;
+}
+
+}  // namespace ed3r

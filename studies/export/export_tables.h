@@ -1,0 +1,31 @@
+// Results as tables for other tools: missions and timesteps of a run with stage, arm and codes by name, and units in the
+// names of the columns.
+//
+// Columns: stage, arm, mission (its number in its arm), then those of MissionRecord or TimestepRecord (record.h) in their
+// order. outcome, motion_rule and execution stand as words ("success", "hover", "offload"). Where no network was asked a
+// predicted reward is empty in CSV and NaN in numpy.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "engine/store/reader.h"
+
+namespace ed3r {
+
+enum class ExportFormat { kCsv, kNumpy };
+
+struct ExportedTable {
+  std::filesystem::path file;
+  std::int64_t rows = 0;
+};
+
+// Writes missions and timesteps into `folder`, which it makes where it is missing; each file appears whole or not at all.
+//   kCsv    missions.csv, timesteps.csv: RFC 4180, numbers in the shortest text that reads back to the same bits
+//   kNumpy  missions.npy, timesteps.npy: one structured array each; words are '<U' texts
+// Every mission is compared with its checksum. Throws UserError.
+std::vector<ExportedTable> ExportTables(ResultReader& reader, ExportFormat format,
+                                        const std::filesystem::path& folder);
+
+}  // namespace ed3r

@@ -1,0 +1,255 @@
+"""The Python module: Gymnasium's interface and autoreset rules, determinism, missions of a policy, results as arrays."""
+
+import contextlib
+import csv
+import os
+import pathlib
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+import ed3r
+
+SWEEP = """# small
+name: small
+missions: 6
+seed: 11
+set: {{mission.world: {world}, robot.battery_mah: 900}}
+sweep:
+  list:
+    - {{name: mine, strategy: external}}
+    - {{name: rbs, strategy: rbs}}
+"""
+
+
+def turning(obs, info):
+    """Looks level, turns, goes where it looks every fourth timestep; a function of what it is given alone."""
+    ahead = 15.0 * (info["timestep"] % 4 == 0)
+    zeros = np.zeros(len(obs))
+    return np.stack([ahead * np.cos(obs[:, 3]), ahead * np.sin(obs[:, 3]), zeros, zeros + 0.7, zeros + 0.1,
+                     info["timestep"] % 3], axis=1)
+
+
+class InTwoStages:
+    def move(self, obs, info):
+        return turning(obs, info)[:, :5]
+
+    def detect(self, robot_obs, info):
+        assert robot_obs.shape == (len(info["mission"]), 9)
+        return info["timestep"] % 3
+
+
+def short_sighted(obs, info):
+    return np.zeros((len(obs), 5))
+
+
+def careless(obs, info):
+    actions = np.zeros((len(obs), 6))
+    actions[0, 0] = np.nan
+    return actions
+
+
+class PythonTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.root = pathlib.Path(cls.folder.name)
+        cls.sweep = cls.root / "small.yaml"
+        cls.sweep.write_text(SWEEP.format(world=SOURCE / "sweeps" / "worlds" / "paper.yaml"), encoding="utf-8")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def env(self, **arguments):
+        return ed3r.VectorEnv(self.sweep, "mine", **arguments)
+
+    def trajectories(self, missions, num_envs, threads, **arguments):
+        """{mission: [(observation, reward), ...]} of the first missions, by the policy `turning`."""
+        env = self.env(num_envs=num_envs, threads=threads, **arguments)
+        obs, infos = env.reset()
+        found, done = {}, set()
+        while not done.issuperset(range(missions)):
+            numbers = infos["mission"].copy()
+            obs, rewards, terminated, _, infos = env.step(turning(obs, infos))
+            for row in np.flatnonzero(infos["_scs"]):
+                end = infos["final_obs"][row] if infos.get("_final_obs", np.zeros(num_envs, bool))[row] else obs[row]
+                found.setdefault(int(numbers[row]), []).append((end.tobytes(), rewards[row]))
+                if terminated[row]:
+                    done.add(int(numbers[row]))
+        return {mission: found[mission] for mission in range(missions)}
+
+    def test_interface(self):
+        env = self.env(num_envs=3)
+        self.assertEqual(env.observation_space.shape, (3, 8))
+        self.assertEqual(env.single_action_space.shape, (6,))
+        self.assertEqual(env.metadata["autoreset_mode"], ed3r.AutoresetMode.NEXT_STEP)
+        with self.assertRaises(ValueError):
+            env.step(env.action_space.sample())
+        obs, infos = env.reset(seed=3)
+        self.assertEqual((obs.shape, obs.dtype), ((3, 8), np.float32))
+        self.assertTrue(env.observation_space.contains(obs))
+        np.testing.assert_array_equal(infos["mission"], [0, 1, 2])
+        np.testing.assert_array_equal(infos["timestep"], [1, 1, 1])
+        np.testing.assert_array_almost_equal(infos["ranges"][0], [20, np.pi / 2, np.pi / 2], 5)
+        obs, rewards, terminated, truncated, infos = env.step(env.action_space.sample())
+        self.assertEqual((rewards.shape, rewards.dtype), ((3,), np.float64))
+        self.assertEqual((terminated.dtype, truncated.dtype), (np.bool_, np.bool_))
+        self.assertTrue((rewards < 0).all())
+        parts = sum(infos[part] for part in ("movement_j", "sensing_j", "computation_j", "transmission_j"))
+        np.testing.assert_allclose(parts, infos["total_j"], rtol=1e-12)
+        np.testing.assert_allclose(obs[:, 7], infos["total_j"], rtol=1e-6)
+        np.testing.assert_allclose(obs[:, 6], infos["scs"], rtol=1e-6)
+
+    def test_a_seed_is_a_mission(self):
+        env = self.env(num_envs=2)
+        first, _ = env.reset(seed=5)
+        other, _ = env.reset(seed=6)
+        again, _ = env.reset(seed=5)
+        np.testing.assert_array_equal(first, again)
+        self.assertTrue((first != other).any())
+        _, infos = env.reset()
+        np.testing.assert_array_equal(infos["mission"], [2, 3])
+
+    def test_rows_and_threads_change_nothing(self):
+        alone = self.trajectories(5, 1, 1)
+        for rows, threads, mode in ((3, 2, "next_step"), (5, 1, "same_step"), (4, 2, "same_step")):
+            self.assertEqual(self.trajectories(5, rows, threads, autoreset_mode=mode), alone)
+
+    def test_two_stages_are_one_step(self):
+        whole, halves = self.env(num_envs=2), self.env(num_envs=2)
+        obs, infos = whole.reset()
+        halves.reset()
+        for _ in range(12):
+            action = turning(obs, infos)
+            obs, rewards, *_, infos = whole.step(action)
+            robot_obs = halves.move(action[:, :5])
+            other = halves.detect(np.floor(action[:, 5]))
+            np.testing.assert_array_equal(obs, other[0])
+            np.testing.assert_array_equal(rewards, other[1])
+            np.testing.assert_array_equal(infos["robot_obs"], other[4]["robot_obs"])
+            flew = infos["_scs"]
+            np.testing.assert_array_equal(robot_obs[flew], infos["robot_obs"][flew])
+
+    def fly_out(self, env):
+        obs, infos = env.reset()
+        for _ in range(1000):
+            obs, rewards, terminated, _, infos = env.step(turning(obs, infos))
+            if terminated[0]:
+                return obs, rewards, infos
+        raise AssertionError("no mission has ended")
+
+    def test_next_step_begins_anew_in_the_next_step(self):
+        env = self.env(num_envs=1)
+        obs, _, infos = self.fly_out(env)
+        self.assertEqual(infos["mission"][0], 0)
+        self.assertIn(infos["outcome"][0], ed3r.Run.codes["outcome"])
+        obs, rewards, terminated, truncated, infos = env.step(turning(obs, infos))
+        self.assertEqual((rewards[0], terminated[0], truncated[0]), (0.0, False, False))
+        self.assertEqual((infos["mission"][0], infos["timestep"][0]), (1, 1))
+        self.assertFalse(infos["_total_j"][0])
+
+    def test_same_step_begins_anew_at_once(self):
+        obs, rewards, infos = self.fly_out(self.env(num_envs=1, autoreset_mode=ed3r.AutoresetMode.SAME_STEP))
+        end, _, end_infos = self.fly_out(self.env(num_envs=1))
+        self.assertTrue(infos["_final_obs"][0] and infos["_final_info"][0])
+        np.testing.assert_array_equal(infos["final_obs"], end)
+        self.assertEqual(infos["final_info"]["total_j"][0], end_infos["total_j"][0])
+        self.assertEqual(infos["total_j"][0], end_infos["total_j"][0])
+        self.assertLess(rewards[0], 0)
+        self.assertEqual((infos["mission"][0], infos["timestep"][0]), (1, 1))
+        self.assertTrue((obs != end).any())
+
+    def test_disabled_waits(self):
+        env = self.env(num_envs=2, autoreset_mode="disabled")
+        obs, _, infos = self.fly_out(env)
+        _, _, terminated, _, infos = env.step(turning(obs, infos))
+        self.assertTrue(terminated[0])
+        other = infos["mission"][1]
+        _, infos = env.reset(options={"reset_mask": np.array([True, False])})
+        np.testing.assert_array_equal(infos["mission"], [2, other])
+
+    def test_views_are_the_engines_memory(self):
+        env = self.env(num_envs=2, copy=False)
+        obs, infos = env.reset()
+        with self.assertRaises(ValueError):
+            obs[0, 0] = 1
+        before = obs.copy()
+        later, *_ = env.step(turning(obs, infos))
+        self.assertIs(later, obs)
+        self.assertTrue((before != obs).any())
+        del env
+        self.assertTrue(np.isfinite(obs).all())  # the memory outlives the environment
+
+    def test_a_policy_is_an_arm(self):
+        out = self.root / "flown"
+        run = ed3r.fly(self.sweep, turning, out, num_envs=4)
+        self.assertEqual([(a["arm"], a["done"]) for a in run.arms], [("mine", 6), ("rbs", 6)])
+        for rows, threads, policy in ((1, 1, turning), (6, 2, turning), (5, 1, InTwoStages())):
+            other = ed3r.fly(self.sweep, policy, self.root / f"flown{rows}", num_envs=rows, threads=threads)
+            self.assertEqual(other.digest(), run.digest())
+        self.assertEqual(ed3r.fly(self.sweep, turning, out).digest(), run.digest())  # nothing is missing
+        with self.assertRaisesRegex(ed3r.UserError, "policy"):
+            ed3r.fly(self.sweep, InTwoStages(), out)
+        self.assertEqual(set(run.report()["arms"]), {"mine", "rbs"})
+
+        missions, steps = run.missions("mine"), run.steps("mine")
+        np.testing.assert_array_equal(missions["mission"], np.arange(6))
+        np.testing.assert_array_equal(missions["scenario"], run.missions("rbs")["scenario"])
+        np.testing.assert_allclose(missions["total_j"],
+                                   [steps["total_j"][steps["mission"] == m].sum() for m in range(6)], rtol=1e-12)
+        outside = next(code for code, name in ed3r.Run.codes["motion_rule"].items() if name == "outside")
+        self.assertTrue((steps["motion_rule"] == outside).any())
+        trajectories = self.trajectories(6, 3, 1)
+        for mission in range(6):  # what the environment showed is what is stored, the unpaid timestep aside
+            rewards = [reward for _, reward in trajectories[mission]]
+            stored = steps["reward"][steps["mission"] == mission]
+            np.testing.assert_array_equal(rewards[:len(stored)], stored)
+            self.assertLessEqual(len(rewards) - len(stored), 1)
+
+    def test_exports_and_views_tell_the_same(self):
+        out = self.root / "exported"
+        run = ed3r.fly(self.sweep, turning, out)
+        program = os.environ["ED3R"]
+        subprocess.run([program, "export", out, "--csv", "--numpy"], check=True, stdout=subprocess.DEVNULL)
+        words = np.vectorize(run.codes["outcome"].get)(run.missions()["outcome"])
+        missions, steps = np.load(out / "export" / "missions.npy"), np.load(out / "export" / "timesteps.npy")
+        for name in ("arm", "mission", "total_j", "start_x_m"):
+            np.testing.assert_array_equal(missions[name], run.missions()[name])
+        np.testing.assert_array_equal(missions["outcome"], words)
+        np.testing.assert_array_equal(steps["reward"], run.steps()["reward"])
+        with open(out / "export" / "timesteps.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        np.testing.assert_array_equal([float(row["scs"]) for row in rows], steps["scs"])
+        np.testing.assert_array_equal([row["motion_rule"] for row in rows], steps["motion_rule"])
+        self.assertTrue({"outside", "hover"} >= {row["motion_rule"] for row in rows if row["arm"] == "mine"})
+        with contextlib.closing(sqlite3.connect(out / "results.sqlite")) as database:
+            seen = database.execute("SELECT outcome, total_j FROM named_missions ORDER BY stage, arm, mission").fetchall()
+            looks = database.execute("SELECT count(*) FROM named_timesteps WHERE execution = 'quantized'").fetchone()
+        self.assertEqual(seen, list(zip(words, run.missions()["total_j"])))
+        self.assertEqual(looks[0], (steps["execution"] == "quantized").sum())
+
+    def test_bad_input_is_one_line(self):
+        with self.assertRaisesRegex(ed3r.UserError, "arm: 'mien' is not in the sweep.*did you mean mine"):
+            ed3r.VectorEnv(self.sweep, "mien")
+        with self.assertRaisesRegex(ed3r.UserError, "is not the only one"):
+            ed3r.VectorEnv(self.sweep)
+        with self.assertRaisesRegex(ed3r.UserError, "agents.eta_mim"):
+            ed3r.VectorEnv(self.sweep, "mine", settings=["agents.eta_mim=1"])
+        with self.assertRaisesRegex(ed3r.UserError, "autoreset_mode: 'never'"):
+            ed3r.VectorEnv(self.sweep, "mine", autoreset_mode="never")
+        with self.assertRaisesRegex(ValueError, "allowed: \\(.*6\\)"):
+            ed3r.fly(self.sweep, short_sighted, self.root / "short")
+        with self.assertRaisesRegex(ed3r.UserError, r"commands\[0, 0\]: nan"):
+            ed3r.fly(self.sweep, careless, self.root / "careless")
+        with self.assertRaisesRegex(ValueError, "version"):
+            ed3r.fly(self.sweep, eval("lambda obs, info: obs"), self.root / "unknown")  # its source cannot be read
+
+
+if __name__ == "__main__":
+    SOURCE = pathlib.Path(sys.argv.pop(1)).resolve()
+    unittest.main()

@@ -1,0 +1,127 @@
+// Networks of the user's own: what comes back of an export, what other tools write, what is refused.
+#include "engine/rfnn/onnx_network.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/core/check.h"
+#include "engine/core/random.h"
+#include "engine/rfnn/model_file.h"
+#include "engine/rfnn/onnx_graph.h"
+
+namespace ed3r {
+namespace {
+
+Model RandomModel(const NetworkDesign& design) {
+  ModelData data;
+  data.weights.resize(ParameterCount(ShapeOf(design)));
+  Stream stream(9, 0, Purpose::kTraining);
+  for (float& weight : data.weights) weight = static_cast<float>(0.2 * stream.Normal());
+  for (int i = 0; i < design.inputs(); ++i) {
+    data.scaling.input_mean.push_back(stream.Normal() * 1e3);
+    data.scaling.input_sd.push_back(i == 3 ? 0.0 : 0.1 + stream.Uniform());
+  }
+  data.scaling.target_mean = -2.3456789012345;
+  data.scaling.target_sd = 0.123456789012345;
+  return Model(design, data);
+}
+
+// A graph of a tool that writes MatMul and Add and leaves the scales out: y = w2 relu(w1 x + b1).
+OnnxGraph SmallGraph() {
+  OnnxGraph graph;
+  graph.inputs = {"x"};
+  graph.outputs = {"y"};
+  OnnxTensor w1{{13, 2}, std::vector<float>(26, 0.0F)};
+  w1.values[0] = 1.0F;           // neuron 0: feature 0
+  w1.values[2 * 8 + 1] = -2.0F;  // neuron 1: -2 x feature 8
+  graph.tensors = {{"w1", w1}, {"b1", {{2}, {0.5F, 0.0F}}}, {"w2", {{2, 1}, {1.0F, 10.0F}}}};
+  graph.nodes = {{"MatMul", "m1", {"x", "w1"}, {"h"}, {}},
+                 {"Add", "a1", {"b1", "h"}, {"hb"}, {}},
+                 {"Relu", "r1", {"hb"}, {"hr"}, {}},
+                 {"MatMul", "m2", {"hr", "w2"}, {"y"}, {}}};
+  return graph;
+}
+
+std::string BytesOf(const OnnxGraph& graph) { return OnnxGraphBytes(graph, 13, "test"); }
+
+std::string RefusalOf(const std::string& bytes) {
+  try {
+    OnnxNetwork::Parse(bytes, "networks.rc: mine.onnx", kRcNetwork);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(OnnxNetworkTest, AnExportComesBackBitForBit) {
+  for (const NetworkDesign* design : {&kRcNetwork, &kRobotNetwork}) {
+    const Model model = RandomModel(*design);
+    const auto back = OnnxNetwork::Parse(OnnxBytes(model), "export", *design);
+    EXPECT_EQ(back->model().data().weights, model.data().weights);
+    EXPECT_EQ(NetworkHash(back->model()), NetworkHash(model));
+    EXPECT_EQ(OnnxBytes(back->model()), OnnxBytes(model));
+  }
+}
+
+TEST(OnnxNetworkTest, WithoutTheMetadataItDiffersByRoundingAlone) {
+  const Model model = RandomModel(kRcNetwork);
+  OnnxGraph graph = ParseOnnxGraph(OnnxBytes(model), "export");
+  graph.metadata.clear();
+  const auto back = OnnxNetwork::Parse(BytesOf(graph), "export", kRcNetwork);
+  Model::Workspace workspace;
+  const std::vector<double> state(8, 900.0);
+  const std::vector<float> action(5, 800.0F);
+  EXPECT_NEAR(back->model().Predict(state, action, workspace), model.Predict(state, action, workspace), 1e-2);
+}
+
+TEST(OnnxNetworkTest, MatMulAndAddAreALayer) {
+  const auto network = OnnxNetwork::Parse(BytesOf(SmallGraph()), "small", kRcNetwork);
+  Model::Workspace workspace;
+  std::vector<double> state(8, 0.0);
+  state[0] = 3.0;
+  EXPECT_EQ(network->model().Predict(state, std::vector<float>{-1, 0, 0, 0, 0}, workspace), 3.5 + 20.0);
+  EXPECT_EQ(network->model().Predict(state, std::vector<float>{+1, 0, 0, 0, 0}, workspace), 3.5);
+}
+
+TEST(OnnxNetworkTest, WhatDoesNotFitIsRefusedByName) {
+  OnnxGraph graph = SmallGraph();
+  graph.nodes[2].op = "Tanh";
+  EXPECT_NE(
+      RefusalOf(BytesOf(graph)).find("networks.rc: mine.onnx: node 'r1' (Tanh): is not understood here"),
+      std::string::npos);
+  graph = SmallGraph();
+  graph.tensors["w2"] = {{2, 2}, {1, 2, 3, 4}};
+  EXPECT_NE(RefusalOf(BytesOf(graph)).find("gives 2 values; allowed: one"), std::string::npos);
+  graph = SmallGraph();
+  graph.tensors["w1"] = {{12, 2}, std::vector<float>(24)};
+  EXPECT_NE(RefusalOf(BytesOf(graph)).find("takes 12 values and gives 2; 13 come"), std::string::npos);
+  graph = SmallGraph();
+  graph.nodes.erase(graph.nodes.begin() + 2);
+  graph.nodes[2].inputs[0] = "hb";
+  EXPECT_NE(RefusalOf(BytesOf(graph)).find("no Relu stands between two layers"), std::string::npos);
+  graph = SmallGraph();
+  graph.tensors["b1"].values[0] = NAN;
+  EXPECT_NE(RefusalOf(BytesOf(graph)).find("not finite"), std::string::npos);
+  graph = SmallGraph();
+  graph.tensors["b1"].values.push_back(1);
+  EXPECT_NE(RefusalOf(BytesOf(graph)).find("tensor 'b1' has 3 values, and its shape tells 2"),
+            std::string::npos);
+  graph = SmallGraph();
+  graph.metadata["ed3r.scaling"] = "1 2 3";
+  EXPECT_NE(RefusalOf(BytesOf(graph)).find("do not fit its tensors"), std::string::npos);
+  EXPECT_NE(RefusalOf("not a network").find("is no ONNX network"), std::string::npos);
+}
+
+TEST(OnnxNetworkTest, EveryCutIsRefused) {
+  const std::string whole = BytesOf(SmallGraph());
+  EXPECT_EQ(RefusalOf(whole), "accepted");
+  int accepted = 0;
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    accepted += RefusalOf(whole.substr(0, size)) == "accepted";
+  // What stands behind the graph, the version of the operators, may be missing.
+  EXPECT_LE(accepted, 1);
+}
+
+}  // namespace
+}  // namespace ed3r

@@ -1,0 +1,111 @@
+// Sweeps whose networks come from files.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "engine/core/check.h"
+#include "engine/core/file.h"
+#include "engine/core/random.h"
+#include "engine/schedule/sweep_runner.h"
+#include "engine/store/digest.h"
+#include "engine/store/reader.h"
+#include "engine/sweep/sweep_file.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+Model RandomModel(const NetworkDesign& design) {
+  ModelData data;
+  data.weights.resize(ParameterCount(ShapeOf(design)));
+  Stream stream(4, 0, Purpose::kTraining);
+  for (float& weight : data.weights) weight = static_cast<float>(0.2 * stream.Normal());
+  data.scaling.input_mean.assign(design.features.size(), 0.1);
+  data.scaling.input_sd.assign(design.features.size(), 11.3);
+  return Model(design, data);
+}
+
+class OwnNetworksTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("ed3r_own_networks_" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    WriteFile(folder_ / "rc.onnx", OnnxBytes(rc_));
+    WriteFile(folder_ / "robot.onnx", OnnxBytes(robot_));
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  SweepPlan Plan(const std::string& set) const {
+    WriteFile(folder_ / "own.yaml",
+              "# own\nname: own\nmissions: 3\nseed: 8\nset: {mission.world: " ED3R_SOURCE_DIR
+              "/sweeps/worlds/paper.yaml, robot.battery_mah: 900, agents.candidates: 50, "
+              "agents.epsilon_decay: 0.1, " +
+                  set + "}\n");
+    return LoadSweep((folder_ / "own.yaml").string());
+  }
+
+  std::string RefusalOf(const std::string& set) const {
+    try {
+      const Inputs inputs(Plan(set));
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  fs::path folder_;
+  Model rc_ = RandomModel(kRcNetwork);
+  Model robot_ = RandomModel(kRobotNetwork);
+};
+
+TEST_F(OwnNetworksTest, TheyFlyAsTheNetworksThatWereExported) {
+  const SweepPlan plan = Plan("strategy: ed3r, networks: {rc: rc.onnx, robot: robot.onnx}");
+  EXPECT_FALSE(NeedsNetworks(plan));
+  const Inputs inputs(plan);
+  SweepOptions options;
+  options.dir = (folder_ / "run").string();
+  options.cache_dir = (folder_ / "cache").string();
+  options.schedule.quiet = true;
+  EXPECT_EQ(RunSweep(plan, inputs, options).flown.stored, 3);
+
+  ResultReader reader(options.dir);
+  EXPECT_TRUE(reader.StoredRecipe().inputs.contains("network rc.onnx"));
+  bool greedy = false;
+  for (int mission = 0; mission < 3; ++mission) {
+    const StoredMission stored = reader.LoadMission({0, 0, mission});
+    MissionTask task = TaskOf(plan, inputs, nullptr, {0, 0, mission});
+    EXPECT_NE(task.networks.rc, nullptr);
+    task.networks = {&rc_, &robot_};
+    EXPECT_EQ(DigestOf(FlyMission(task)), DigestOf(stored.record));
+    for (const TimestepRecord& step : stored.record.steps)
+      greedy = greedy || step.motion_rule == static_cast<std::int64_t>(MotionRule::kGreedy);
+  }
+  EXPECT_TRUE(greedy);
+}
+
+TEST_F(OwnNetworksTest, WhatIsMissingIsSaid) {
+  EXPECT_EQ(RefusalOf("strategy: ablation-2, networks.rc: rc.onnx"), "accepted");  // its robot has no choice
+  EXPECT_NE(
+      RefusalOf("strategy: ed3r, networks.rc: rc.onnx").find("asks networks, so the stage must come after"),
+      std::string::npos);
+  EXPECT_NE(RefusalOf("strategy: rbs, networks.rc: rc.onnx").find("strategy rbs asks no such network"),
+            std::string::npos);
+  EXPECT_NE(RefusalOf("strategy: ablation-2, networks.rc: robot.onnx").find("13 come"), std::string::npos);
+  EXPECT_NE(RefusalOf("strategy: ablation-2, networks.rc: none.onnx").find("'trained' is allowed too"),
+            std::string::npos);
+}
+
+// Arms of strategy external are flown by a program alone.
+TEST_F(OwnNetworksTest, DecisionsFromOutsideNeedAProgram) {
+  const SweepPlan plan = Plan("strategy: external");
+  const Inputs inputs(plan);
+  SweepOptions options;
+  options.dir = (folder_ / "outside").string();
+  EXPECT_THROW(RunSweep(plan, inputs, options), UserError);
+  EXPECT_FALSE(fs::exists(options.dir));
+}
+
+}  // namespace
+}  // namespace ed3r
