@@ -28,6 +28,11 @@ TEST(ScoreTest, FlickerBelowTheThresholdCountsAsNothingSeen) {
   EXPECT_GT(StableConfidence(weak, 0.0).mean, 0.4);
 }
 
+TEST(ScoreTest, AConfidenceAtTheThresholdCounts) {
+  const std::array confidences = {0.5, 0.5, 0.25};
+  EXPECT_DOUBLE_EQ(StableConfidence(confidences, 0.5).mean, 1.0 / 3.0);
+}
+
 // One confident frame of 33 has a deviation above its mean: the score is cut at 0.
 TEST(ScoreTest, InstabilityIsNeverNegative) {
   std::array<double, 33> confidences{};

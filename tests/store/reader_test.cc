@@ -1,7 +1,11 @@
 #include "engine/store/reader.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <thread>
 
 #include "tests/store/store_fixture.h"
@@ -59,6 +63,28 @@ TEST(ReaderTest, OneMission) {
                        }),
                        "stage online, arm ed3r-75, mission 16 is not stored"));
   EXPECT_TRUE(Contains(UserErrorOf([&] { reader.LoadMission({2, 1, 30}); }), "no mission 30"));
+}
+
+// As a writer leaves it that is ended while it writes the file's first page: a rollback journal, and half a change.
+TEST(ReaderTest, AJournalThatAWriterLeftIsRolledBack) {
+  const TempDir temp;
+  WriteStore(temp / "run", {{2, 1, 17}});
+  const std::string digest = DigestOfDir(temp / "run"), file = ResultsIn(temp / "run");
+  const pid_t child = fork();
+  if (child == 0) {
+    Connection database(file, Connection::Access::kReadWrite);
+    database.Execute(
+        "PRAGMA cache_size = 1; PRAGMA cache_spill = ON; BEGIN IMMEDIATE; UPDATE missions SET total_j = 0; "
+        "CREATE "
+        "TABLE more (x); INSERT INTO more SELECT randomblob(200000) FROM runs; UPDATE more SET x = "
+        "randomblob(300000)");
+    std::raise(SIGKILL);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_GT(std::filesystem::file_size(file + "-journal"), 0u);
+  EXPECT_EQ(DigestOfDir(temp / "run"), digest);
+  EXPECT_FALSE(std::filesystem::exists(file + "-journal"));
 }
 
 TEST(ReaderTest, StatusCountsDoneFailedAndMissing) {
