@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/agents/strategies/rbs_execution.h"
 #include "engine/agents/strategy.h"
 #include "engine/core/check.h"
 #include "engine/core/random.h"
@@ -97,7 +98,7 @@ std::string AllowedNames(const Strategy& strategy) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string ChoiceText(DecidedBy by, const Strategy& strategy, const DecisionProbe& probe) {
+std::string ChoiceText(DecidedBy by, const Strategy& strategy) {
   switch (by) {
     case DecidedBy::kDraw:
       return "drawn at random from " + AllowedNames(strategy);
@@ -119,8 +120,7 @@ std::string ExecutionText(const MissionTask& task, const DecisionProbe& probe) {
     const double reward = probe.robot_rewards[static_cast<std::size_t>(value)];
     if (!std::isnan(reward)) text += fmt::format("  {:<10} predicted reward {:.4f}\n", name, reward);
   }
-  return text +
-         fmt::format("  > {}: {}\n", NameOf(probe.execution.execution), ChoiceText(by, strategy, probe));
+  return text + fmt::format("  > {}: {}\n", NameOf(probe.execution.execution), ChoiceText(by, strategy));
 }
 
 void AddExecution(const MissionTask& task, const DecisionProbe& probe, nlohmann::ordered_json& object) {
