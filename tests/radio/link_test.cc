@@ -35,6 +35,21 @@ TEST(LinkTest, ShadowingIsNotCompensated) {
   EXPECT_NEAR(clear.signal_to_noise / shadowed.signal_to_noise, 10.0, 1e-9);
 }
 
+// The whole budget by hand, where nothing is at a limit and no factor is 1.
+TEST(LinkTest, TheBudgetByHand) {
+  RadioConfig radio;
+  radio.reference_m = 2.0;
+  const Link link = EvaluateLink(radio, 60.0, 22.5e6, 3.0);
+  const double loss_db =
+      20 * std::log10(4 * 3.14159265358979 * 2.0 * 2.4e9 / 299792458.0) + 38 * std::log10(30.0);
+  const double sent_w = std::pow(10.0, (-80.0 + loss_db - 30) / 10), noise_w = 22.5e6 * std::pow(10.0, -18.8);
+  const double signal_to_noise = sent_w * std::pow(10.0, -(loss_db + 3) / 10) / noise_w;
+  EXPECT_NEAR(link.path_loss_db, loss_db, 1e-9);
+  EXPECT_NEAR(link.transmit_power_w, sent_w, 1e-9 * sent_w);
+  EXPECT_NEAR(link.signal_to_noise, signal_to_noise, 1e-9 * signal_to_noise);
+  EXPECT_NEAR(link.rate_bps, 22.5e6 * std::log2(1 + signal_to_noise), 1e-3);
+}
+
 TEST(LinkTest, EfficiencyStaysInItsBand) {
   const RadioConfig radio;
   EXPECT_EQ(EvaluateLink(radio, 400.0, 20e6, 0.0).rate_bps, 20e6 * radio.efficiency_min);
