@@ -8,6 +8,7 @@
 
 #include "engine/agents/strategy.h"
 #include "engine/core/check.h"
+#include "engine/mission/invariants.h"
 #include "engine/python/fleets.h"
 #include "engine/schedule/sweep_runner.h"
 #include "engine/sweep/sweep_file.h"
@@ -42,7 +43,9 @@ std::shared_ptr<FleetHandle> FleetOf(const SweepPlan& plan, const Inputs& inputs
   handle->fleet->OnRecord(
       [&offer, id = todo.front()](const MissionTask& flown, std::optional<MissionRecord> record) {
         const bool ended = record.has_value();
-        offer({id.stage, id.arm, flown.mission}, std::move(record), ended ? "" : "the mission does not end");
+        Failure failure;
+        if (!ended) failure = {std::string(NameOf(Invariant::kMissionEnds)), "the mission does not end"};
+        offer({id.stage, id.arm, flown.mission}, std::move(record), std::move(failure));
       });
   return handle;
 }

@@ -189,7 +189,7 @@ class Stages {
     Recorder recorder(*store_, schedule, missions, todo.size());
     options_.outside(
         ArmOf(todo.front()), todo,
-        [&](const RunId& id, std::optional<MissionRecord> record, std::string failure) {
+        [&](const RunId& id, std::optional<MissionRecord> record, Failure failure) {
           recorder.Offer({id, std::move(record), std::move(failure), 0.0});
         },
         recorder.stop());

@@ -14,6 +14,7 @@
 #include "engine/schedule/todo.h"
 #include "engine/schedule/training_stage.h"
 #include "engine/store/recipe.h"
+#include "engine/store/records.h"
 #include "engine/sweep/plan.h"
 
 namespace ed3r {
@@ -34,8 +35,7 @@ using HalfWidthFn = std::function<double(const std::string& dir, int stage, int 
 // Flies missions of one arm whose decisions come from outside (strategy external). Each that has ended is offered, or why it
 // failed; what is left when `stop` becomes true is flown another time. What it throws ends the sweep; what was offered is
 // kept.
-using OfferFn =
-    std::function<void(const RunId& id, std::optional<MissionRecord> record, std::string failure)>;
+using OfferFn = std::function<void(const RunId& id, std::optional<MissionRecord> record, Failure failure)>;
 using OutsideFn = std::function<void(const Arm& arm, const std::vector<RunId>& todo, const OfferFn& offer,
                                      const std::atomic<bool>& stop)>;
 

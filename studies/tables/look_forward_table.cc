@@ -140,7 +140,7 @@ std::string LookForwardText(const std::vector<LookForward>& arms) {
   std::string text = Pad("look-forward errors", 21, Align::kLeft);
   for (const char* heading : {"mean", "mission", "timestep", "LF, arm", "P85", "LF, all", "P85"})
     text += Pad(heading, 9, Align::kRight);
-  text += "\n" + Rule(DisplayWidth(text)) + "\n";
+  text += fmt::format("\n{}\n", Rule(DisplayWidth(text)));
   for (const LookForward& row : arms) {
     largest = std::max(largest, row.largest_mission);
     text += Pad(ArmLabel(row.arm), 21, Align::kLeft) + Cell(row.mean_error, "{:.3f}") +

@@ -46,7 +46,8 @@ MotionChoice GreedyMotion::Choose(const MotionQuestion& question) {
 
 MotionChoice GreedyMotion::Explore(const MotionQuestion& question) {
   Stream stream(context_.seed, context_.scenario, Purpose::kMotion, question.timestep);
-  MotionChoice choice{.epsilon = question.epsilon};
+  MotionChoice choice;
+  choice.epsilon = question.epsilon;
   choice.command = DrawCommand(question.ranges, context_.config.agents, question.view.pose.tilt_rad, stream);
   choice.predicted_reward = Predict(question.view, choice.command);
   return choice;
