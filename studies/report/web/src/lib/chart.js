@@ -61,3 +61,7 @@ export function axes(ground, x, y, labels, ticks = {}) {
     inner.append(axis, svg("text", { class: "axis-label", x: -8, y: -12, "text-anchor": "start" }, labels.y));
   }
 }
+
+/** Room for the names beside the rows of a picture. */
+export const labelWidth = (rows) =>
+  Math.min(190, 18 + 7.9 * Math.max(8, ...rows.map((row) => row.arm.label.length)));

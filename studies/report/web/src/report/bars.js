@@ -1,6 +1,6 @@
 // Three pictures of stacked bars: what energy goes into, how missions end, where and with what timesteps are processed.
 import { scaleLinear } from "d3-scale";
-import { axes, canvas, figure } from "../lib/chart.js";
+import { axes, canvas, figure, labelWidth } from "../lib/chart.js";
 import { el, svg } from "../lib/dom.js";
 import { withInterval } from "../lib/format.js";
 import { OUTCOMES } from "../lib/palette.js";
@@ -117,7 +117,7 @@ function draw(place, rows, spec, model, store) {
   const ground = canvas(place, {
     height: rows.length * ROW + MARGIN.top + MARGIN.bottom,
     label: spec.title,
-    margin: MARGIN,
+    margin: { ...MARGIN, left: labelWidth(rows) },
   });
   const longest = Math.max(
     1,

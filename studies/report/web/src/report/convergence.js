@@ -1,7 +1,7 @@
 // How sure after how many missions: half of the interval's width against the number of missions, both logarithmic.
 import { scaleLog } from "d3-scale";
 import { line } from "d3-shape";
-import { axes, canvas, figure } from "../lib/chart.js";
+import { axes, canvas, figure, labelWidth } from "../lib/chart.js";
 import { el, svg } from "../lib/dom.js";
 import { count, number } from "../lib/format.js";
 import { tableBehind } from "../lib/table.js";
@@ -47,7 +47,7 @@ function draw(place, list, label, store) {
   const ground = canvas(place, {
     height: 320,
     label: `Half-width in ${label} against missions`,
-    margin: MARGIN,
+    margin: { ...MARGIN, right: labelWidth(list) },
   });
   const values = list.flatMap((c) => c.points.flatMap((p) => [p.all, p.alone])).filter((v) => v > 0);
   if (values.length === 0) {

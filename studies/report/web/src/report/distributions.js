@@ -1,7 +1,7 @@
 // How missions spread: a row for each arm, missions stacked by how they ended, with the mean and its interval.
 import { max } from "d3-array";
 import { scaleLinear } from "d3-scale";
-import { axes, canvas, figure } from "../lib/chart.js";
+import { axes, canvas, figure, labelWidth } from "../lib/chart.js";
 import { el, svg } from "../lib/dom.js";
 import { count, number, plural, withInterval } from "../lib/format.js";
 import { OUTCOMES } from "../lib/palette.js";
@@ -70,7 +70,7 @@ export const outcomeLegend = (store) =>
 
 function draw(place, rows, store) {
   const narrow = place.clientWidth < 560;
-  const margin = { ...MARGIN, left: narrow ? 12 : MARGIN.left };
+  const margin = { ...MARGIN, left: narrow ? 12 : labelWidth(rows) };
   const ground = canvas(place, {
     height: rows.length * ROW + margin.top + margin.bottom,
     label: "Distribution of missions, one row for each arm",

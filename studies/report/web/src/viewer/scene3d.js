@@ -271,15 +271,15 @@ function fireAt(world, number) {
 
 /** A word that stands `up_m` above its place, of the same size on the screen from wherever it is seen. */
 function sign(word, up_m) {
-  const canvas = el("canvas", { width: 256, height: 64 });
+  const canvas = el("canvas", { width: 512, height: 64 });
   const pen = canvas.getContext("2d");
   pen.font = "600 40px system-ui, sans-serif";
   pen.textAlign = "center";
   pen.lineWidth = 8;
   pen.strokeStyle = "rgba(10,14,18,.75)";
-  pen.strokeText(word, 128, 46);
+  pen.strokeText(word, 256, 46);
   pen.fillStyle = "#ffffff";
-  pen.fillText(word, 128, 46);
+  pen.fillText(word, 256, 46);
   const sprite = new Sprite(
     new SpriteMaterial({
       map: new CanvasTexture(canvas),
@@ -288,7 +288,7 @@ function sign(word, up_m) {
       transparent: true,
     }),
   );
-  sprite.scale.set(0.16, 0.04, 1);
+  sprite.scale.set(0.32, 0.04, 1);
   sprite.position.y = up_m;
   return sprite;
 }
