@@ -74,8 +74,10 @@ int Run(const Options& options) {
     Tell(summary, sweep.dir);
   }
   if (summary.flown.interrupted) {
-    fmt::print(stderr, "interrupted: what is stored is kept; the same command continues\n");
-    return kInterrupted;
+    const bool requeue = AsksRequeue(InterruptSignal());
+    fmt::print(stderr, "{}: what is stored is kept; the same command continues\n",
+               requeue ? fmt::format("ended by {}", SignalName(InterruptSignal())) : "interrupted");
+    return requeue ? kRequeue : kInterrupted;
   }
   return summary.flown.failed > 0 ? kMissionsFailed : kDone;
 }

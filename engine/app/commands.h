@@ -1,5 +1,6 @@
 // The commands of ed3r. Each adds its options to the program and returns the exit status when it is the one
-// chosen: 0 done, 1 something failed inside, 2 bad input, 3 finished with failed missions, 130 interrupted.
+// chosen: 0 done, 1 something failed inside, 2 bad input, 3 finished with failed missions, 75 ended by a batch
+// system's signal, 130 interrupted.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -46,6 +47,7 @@ constexpr int kDone = 0;
 constexpr int kFailedInside = 1;
 constexpr int kBadInput = 2;
 constexpr int kMissionsFailed = 3;
+constexpr int kRequeue = 75;  // EX_TEMPFAIL: the same command continues
 constexpr int kInterrupted = 130;
 
 }  // namespace ed3r

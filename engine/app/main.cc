@@ -122,6 +122,6 @@ int Delivered(int status) {
 int main(int argc, char** argv) {
   // A file that grows beyond its limit is an error of the write, told like any other.
   std::signal(SIGXFSZ, SIG_IGN);
-  ed3r::EndOnInterrupt(ed3r::kInterrupted);
+  ed3r::EndOnInterrupt({.interrupted = ed3r::kInterrupted, .requeue = ed3r::kRequeue});
   return ed3r::Delivered(ed3r::Main(argc, argv));
 }

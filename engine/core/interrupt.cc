@@ -2,44 +2,112 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <string_view>
 
 namespace ed3r {
 namespace {
 
+constexpr std::array<int, 3> kBatchSignals = {SIGTERM, SIGHUP, SIGUSR1};
+// Batch systems kill after their grace time, commonly from five seconds on.
+constexpr unsigned kPatience_s = 4;
+
 std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not lock");
+std::atomic<int> first_signal{0};
+std::atomic<int> status_interrupted{0}, status_requeue{0};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
+              "a signal handler may not lock");
 
-std::atomic<int> status_when_ended{0};
-
-void OnSignal(int) { interrupted.store(true); }
-
-void OnSignalAtOnce(int) {
-  constexpr std::string_view kLine = "ed3r: interrupted\n";
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kLine.data(), kLine.size());
-  _exit(status_when_ended.load());
+void Keep(int signal) {
+  int none = 0;
+  first_signal.compare_exchange_strong(none, signal);
 }
 
-void Install(void (*handler)(int), unsigned flags) {
+void Say(std::string_view line) {
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
+}
+
+void OnSignalAtOnce(int signal) {
+  if (signal == SIGINT) {
+    Say("ed3r: interrupted\n");
+    _exit(status_interrupted.load());
+  }
+  Say("ed3r: ended by ");
+  Say(SignalName(signal));
+  Say("; the same command continues\n");
+  _exit(status_requeue.load());
+}
+
+void OnInterrupt(int signal) {
+  Keep(signal);
+  interrupted.store(true);
+}
+
+void OnBatchSignal(int signal) {
+  Keep(signal);
+  interrupted.store(true);
+  alarm(kPatience_s);
+}
+
+// What is committed is as safe as under kill -9.
+void OnAlarm(int) { OnSignalAtOnce(first_signal.load()); }
+
+// SA_RESTART: the flag is polled, so no system call of a library needs to see EINTR.
+void Handle(int signal, void (*handler)(int), unsigned flags) {
   struct sigaction action = {};
   action.sa_handler = handler;
-  action.sa_flags = static_cast<int>(flags);
+  action.sa_flags = static_cast<int>(flags | SA_RESTART);
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  sigaction(signal, &action, nullptr);
+}
+
+void HandleBatchSignals(void (*handler)(int)) {
+  for (const int signal : kBatchSignals) {
+    struct sigaction before = {};
+    sigaction(signal, nullptr, &before);
+    if (signal == SIGHUP && before.sa_handler == SIG_IGN) continue;
+    Handle(signal, handler, 0);
+  }
 }
 
 }  // namespace
 
 std::atomic<bool>& InterruptFlag() { return interrupted; }
 
-void EndOnInterrupt(int status) {
-  status_when_ended.store(status);
-  Install(OnSignalAtOnce, SA_RESTART);
+int InterruptSignal() { return first_signal.load(); }
+
+bool AsksRequeue(int signal) {
+  return std::find(kBatchSignals.begin(), kBatchSignals.end(), signal) != kBatchSignals.end();
 }
 
-// SA_RESTART: the flag is polled, so no system call of a library needs to see EINTR.
-void InstallInterruptHandler() { Install(OnSignal, SA_RESETHAND | SA_RESTART); }
+const char* SignalName(int signal) {
+  switch (signal) {
+    case SIGINT:
+      return "SIGINT";
+    case SIGTERM:
+      return "SIGTERM";
+    case SIGHUP:
+      return "SIGHUP";
+    case SIGUSR1:
+      return "SIGUSR1";
+    default:
+      return "a signal";
+  }
+}
+
+void EndOnInterrupt(EndStatus status) {
+  status_interrupted.store(status.interrupted);
+  status_requeue.store(status.requeue);
+  Handle(SIGINT, OnSignalAtOnce, 0);
+  HandleBatchSignals(OnSignalAtOnce);
+}
+
+void InstallInterruptHandler() {
+  Handle(SIGALRM, OnAlarm, 0);
+  Handle(SIGINT, OnInterrupt, SA_RESETHAND);
+  HandleBatchSignals(OnBatchSignal);
+}
 
 }  // namespace ed3r

@@ -1,4 +1,9 @@
-// Ctrl-C: a flag that long work looks at, and the exception by which a mission in flight gives up.
+// Ctrl-C and the signals of batch systems: a flag that long work looks at, and the exception by which a mission in flight
+// gives up.
+//
+// SIGINT is a person who wants the program to end. SIGTERM, SIGHUP and SIGUSR1 are a batch system's notice (preemption, a
+// time limit, a node that goes down): the process ends within seconds, and its status says that the same command
+// continues.
 #pragma once
 
 #include <atomic>
@@ -12,16 +17,30 @@ class Interrupted : public std::exception {
   const char* what() const noexcept override { return "interrupted"; }
 };
 
-// True once SIGINT or SIGTERM has arrived (and InstallInterruptHandler was called before).
+// Exit statuses by what the signal asks for.
+struct EndStatus {
+  int interrupted;  // SIGINT
+  int requeue;      // a batch system's signals
+};
+
+// True once one of the signals has arrived (and InstallInterruptHandler was called before).
 // One flag per process; lock-free, so that the signal handler may set it.
 std::atomic<bool>& InterruptFlag();
 
-// For the time before work that looks at the flag begins: SIGINT and SIGTERM end the process with one line on standard
-// error and this status.
-void EndOnInterrupt(int status);
+// The first of the signals that has arrived, 0 before that.
+int InterruptSignal();
+// Whether it is a batch system's.
+bool AsksRequeue(int signal);
+// "SIGTERM", for messages.
+const char* SignalName(int signal);
 
-// SIGINT and SIGTERM (Slurm's notice before a time limit) set the flag. The handler serves once per signal:
-// a second Ctrl-C ends the process at once.
+// For the time before work that looks at the flag begins: the signals end the process with one line on standard error and
+// their status. SIGHUP stays ignored where it was (nohup).
+void EndOnInterrupt(EndStatus status);
+
+// The signals set the flag from now on. A second Ctrl-C ends the process at once. A batch system's signal lets the process
+// live for four seconds more: whatever does not look at the flag in that time is ended in its midst, as by a kill, with a
+// line and the status of EndOnInterrupt.
 void InstallInterruptHandler();
 
 }  // namespace ed3r

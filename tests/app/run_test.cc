@@ -92,13 +92,16 @@ TEST(RunTest, AKillLosesLittleAndTheSameCommandContinues) {
   EXPECT_EQ(Fly("rbs.yaml", "--missions 250", scratch / "killed"), whole);
 }
 
-TEST(RunTest, CtrlCKeepsWhatIsStoredAndExitsWith130) {
-  const ScratchFolder scratch;
-  const int status = RunAndSignal("rbs.yaml", "2000", scratch / "run", SIGINT, 10);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_GE(DoneMissions(scratch / "run"), 10);
-  EXPECT_LT(DoneMissions(scratch / "run"), 2000);
+TEST(RunTest, CtrlCExitsWith130AndABatchSystemsSignalWith75AndBothKeepWhatIsStored) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) {
+    const ScratchFolder scratch;
+    const int status = RunAndSignal("rbs.yaml", "2000", scratch / "run", signal, 10);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), signal == SIGINT ? 130 : 75);
+    EXPECT_GE(DoneMissions(scratch / "run"), 10);
+    EXPECT_LT(DoneMissions(scratch / "run"), 2000);
+    EXPECT_EQ(Ed3r("verify " + (scratch / "run").string()).status, 0);
+  }
 }
 
 TEST(RunTest, ARunThatIsCompleteFliesNothingAgain) {

@@ -1,34 +1,71 @@
 #include "engine/core/interrupt.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <string>
 
 namespace ed3r {
 namespace {
 
-TEST(InterruptTest, ASignalSetsTheFlagOnceAndTheNextOneEndsTheProcess) {
-  for (const int signal : {SIGINT, SIGTERM}) {
-    InterruptFlag() = false;
-    InstallInterruptHandler();
-    EXPECT_FALSE(InterruptFlag());
-    std::raise(signal);
-    EXPECT_TRUE(InterruptFlag());
-    EXPECT_EXIT(std::raise(signal), ::testing::KilledBySignal(signal), "");
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
-  }
-  InterruptFlag() = false;
+constexpr int kAll[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
+
+// Each test in a process of its own, because signals and the flag belong to the process.
+TEST(InterruptTest, ASignalSetsTheFlagAndASecondCtrlCEndsTheProcess) {
+  for (const int signal : kAll)
+    EXPECT_EXIT(
+        {
+          InstallInterruptHandler();
+          if (InterruptFlag() || InterruptSignal() != 0) _exit(1);
+          std::raise(signal);
+          if (!InterruptFlag() || InterruptSignal() != signal) _exit(2);
+          if (AsksRequeue(signal) != (signal != SIGINT)) _exit(3);
+          std::raise(SIGTERM);  // a batch system may send several; the first one counts
+          if (InterruptSignal() != signal) _exit(4);
+          std::raise(SIGINT);
+          if (signal != SIGINT) std::raise(SIGINT);
+          _exit(5);
+        },
+        ::testing::KilledBySignal(SIGINT), "^$");
 }
 
 TEST(InterruptTest, BeforeThereIsWorkASignalEndsTheProcessWithALineAndAStatus) {
-  for (const int signal : {SIGINT, SIGTERM})
+  for (const int signal : kAll)
     EXPECT_EXIT(
         {
-          EndOnInterrupt(130);
+          EndOnInterrupt({.interrupted = 130, .requeue = 75});
           std::raise(signal);
         },
-        ::testing::ExitedWithCode(130), "^ed3r: interrupted\n$");
+        ::testing::ExitedWithCode(signal == SIGINT ? 130 : 75),
+        signal == SIGINT
+            ? "^ed3r: interrupted\n$"
+            : std::string("^ed3r: ended by ") + SignalName(signal) + "; the same command continues\n$");
+}
+
+TEST(InterruptTest, WorkThatDoesNotLookAtTheFlagIsEndedAfterABatchSystemsSignal) {
+  EXPECT_EXIT(
+      {
+        EndOnInterrupt({.interrupted = 130, .requeue = 75});
+        InstallInterruptHandler();
+        std::raise(SIGUSR1);
+        if (alarm(1) == 0) _exit(1);  // nobody would end it
+        while (true) pause();
+      },
+      ::testing::ExitedWithCode(75), "^ed3r: ended by SIGUSR1; the same command continues\n$");
+}
+
+TEST(InterruptTest, UnderNohupAClosedTerminalIsNoReasonToEnd) {
+  EXPECT_EXIT(
+      {
+        std::signal(SIGHUP, SIG_IGN);
+        EndOnInterrupt({.interrupted = 130, .requeue = 75});
+        std::raise(SIGHUP);
+        InstallInterruptHandler();
+        std::raise(SIGHUP);
+        _exit(InterruptFlag() ? 1 : 0);
+      },
+      ::testing::ExitedWithCode(0), "^$");
 }
 
 }  // namespace

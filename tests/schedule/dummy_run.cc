@@ -35,7 +35,8 @@ int Run(const std::string& dir, int missions, int threads, int delay_ms, const c
   };
   const RunSummary summary = RunMissions(Todo(layout, 0, Shard{}, store->Stored()), fly, *store,
                                          {.threads = threads, .stop = &InterruptFlag()});
-  return summary.interrupted ? 130 : summary.failed > 0 ? 3 : 0;
+  if (summary.interrupted) return AsksRequeue(InterruptSignal()) ? 75 : 130;
+  return summary.failed > 0 ? 3 : 0;
 }
 
 }  // namespace

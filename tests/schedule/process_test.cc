@@ -126,13 +126,13 @@ TEST(ProcessTest, AKillCostsLessThanASecondAndResumesToTheSameDigest) {
   EXPECT_EQ(DigestOfDir(temp / "run"), WholeDigest());
 }
 
-TEST(ProcessTest, CtrlCKeepsWhatIsStored) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+TEST(ProcessTest, CtrlCAndABatchSystemsSignalsKeepWhatIsStored) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) {
     const TempDir temp;
     DummyRun run(temp / "run", 2, 3, temp / "log");
     WaitFor([&] { return ReadLog(temp / "log").size() > 20; });
     run.Signal(signal);
-    EXPECT_EQ(run.Wait(), 130);
+    EXPECT_EQ(run.Wait(), signal == SIGINT ? 130 : 75);
     const std::int64_t stored = StoredIn(temp / "run");
     const auto flown = static_cast<std::int64_t>(ReadLog(temp / "log").size());
     EXPECT_GE(stored, flown - 2) << "only those may be missing that came back while it stopped";
