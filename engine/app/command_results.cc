@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/app/commands.h"
+#include "engine/app/stage_state.h"
+#include "engine/app/status_of_shards.h"
 #include "engine/store/digest.h"
 #include "engine/store/merge.h"
 #include "engine/store/reader.h"
@@ -63,7 +65,14 @@ Command AddStatus(CLI::App& program) {
   CLI::App* parser =
       program.add_subcommand("status", "Done, failed and missing missions of a run, while it runs or after");
   const auto options = AddDirOptions(*parser);
-  return {parser, [options] {
+  auto stage = std::make_shared<std::string>();
+  parser->add_option(
+      "--stage", *stage,
+      "Whether this stage is finished: exit 0; 3 when missions failed or are missing; 75 when a stage "
+      "with a precision is due another round");
+  return {parser, [options, stage] {
+            if (!stage->empty()) return TellStage(options->dir, *stage);
+            if (IsTallied(options->dir)) return TellTally(options->dir, options->json);
             ResultReader reader(options->dir);
             options->json ? PrintStatusJson(reader) : PrintStatus(reader);
             return kDone;
