@@ -1,3 +1,5 @@
+#include "engine/app/command_slurm.h"
+
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -9,7 +11,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "engine/app/command_slurm.h"
 #include "engine/app/expected_time.h"
 #include "engine/app/sweep_arguments.h"
 #include "engine/app/words.h"
@@ -158,8 +159,8 @@ int Run(const Options& options) {
   CheckDirective("--partition", options.partition);
   CheckDirective("--account", options.account);
   if (options.scratch.find_first_of("\"`\\\n") != std::string::npos)
-    throw UserError(fmt::format("--scratch: '{}' is not allowed; allowed: a path, or a variable such as $TMPDIR",
-                                options.scratch));
+    throw UserError(fmt::format(
+        "--scratch: '{}' is not allowed; allowed: a path, or a variable such as $TMPDIR", options.scratch));
   const SweepPlan plan = options.sweep.Load();
   CheckTraining(plan);
   const std::string run_dir = options.out.empty() ? DefaultRunDir(plan) : options.out;
