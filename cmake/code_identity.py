@@ -18,7 +18,8 @@ import sys
 LISTS = [
     # Cannot decide a number: commands, pictures, files and their names, progress, messages, measurements. How a sweep file
     # is read is left out because what comes of it, the plan, is compared as it is.
-    ("", ["engine/app/*", "engine/python/*", "*/bench/*", "engine/store/*", "engine/world/map_*", "engine/perception/render/data_set.*",
+    ("", ["engine/app/*", "engine/python/*", "*/bench/*", "engine/store/*",
+          "engine/schedule/batch/*", "engine/world/map_*", "engine/perception/render/data_set.*",
           "engine/perception/render/pictures.*", "engine/core/progress.*", "engine/core/interrupt.*",
           "engine/core/suggest.*", "engine/core/version.*", "engine/core/sealed_file.*"]),
     ("flight", ["engine/sweep/plan.*"]),

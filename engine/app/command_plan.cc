@@ -5,44 +5,20 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "engine/agents/strategy.h"
 #include "engine/app/commands.h"
+#include "engine/app/expected_time.h"
 #include "engine/app/sweep_arguments.h"
 #include "engine/app/words.h"
-#include "engine/robot/energy.h"
 
 namespace ed3r {
 namespace {
-
-// Simulated over wall seconds per core of this engine on its reference machine (2 shared cores of an EPYC server with
-// AVX2) in the two tiers of perception; only for the estimate that `ed3r plan` prints.
-constexpr double kRealTimePerCore = 10000.0;
-constexpr double kRealTimePerCoreOnPixels = 1100.0;
-// Mean length of a mission that may end early (paper: RBS).
-constexpr double kEarlyCompletionS = 280.0;
 
 struct Options {
   SweepArguments sweep;
   bool json = false;
 };
 
-// A mission without early completion lasts until the battery is empty.
-double ExpectedSimulatedS(const Arm& arm) {
-  const Config& config = arm.config;
-  if (FindStrategy(config.mission.strategy).early_completion && config.agents.early_completion)
-    return kEarlyCompletionS;
-  return config.robot.BatteryJ() / MovementPowerOf(config.robot, config.environment, config.energy).hover_w;
-}
-
-double ExpectedWallS(const Stage& stage, int threads) {
-  double core_s = 0.0;
-  for (const Arm& arm : stage.arms) {
-    const bool pixels = arm.config.perception.tier == PerceptionTier::kPixels;
-    core_s +=
-        stage.missions * ExpectedSimulatedS(arm) / (pixels ? kRealTimePerCoreOnPixels : kRealTimePerCore);
-  }
-  return core_s / threads;
-}
+double ExpectedWallS(const Stage& stage, int threads) { return ExpectedCoreS(stage) / threads; }
 
 void PrintJson(const SweepPlan& plan, int threads) {
   nlohmann::ordered_json object = {

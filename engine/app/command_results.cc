@@ -9,6 +9,8 @@
 #include "engine/app/commands.h"
 #include "engine/app/failure_text.h"
 #include "engine/app/report_missions.h"
+#include "engine/app/stage_state.h"
+#include "engine/app/status_of_shards.h"
 #include "engine/app/status_watch.h"
 #include "engine/app/words.h"
 #include "engine/core/file.h"
@@ -102,9 +104,16 @@ Command AddStatus(CLI::App& program) {
       ->check(NotEmpty());
   parser->add_option("--every", watch->seconds, "Seconds between two looks of --watch and --html; default 5")
       ->check(CLI::Range(1, 3600));
-  return {parser, [options, watch] {
+  auto stage = std::make_shared<std::string>();
+  parser->add_option(
+      "--stage", *stage,
+      "Whether this stage is finished: exit 0; 3 when missions failed or are missing; 75 when a stage "
+      "with a precision is due another round");
+  return {parser, [options, stage, watch] {
             watch->dir = options->dir;
             if (watch->terminal || !watch->html.empty()) return WatchStatus(*watch);
+            if (!stage->empty()) return static_cast<int>(TellStage(options->dir, *stage));
+            if (IsTallied(options->dir)) return static_cast<int>(TellTally(options->dir, options->json));
             ResultReader reader(options->dir);
             const Check check = CheckOf(reader);
             options->json ? PrintStatusJson(reader, check) : PrintStatus(reader, check);

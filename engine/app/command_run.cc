@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "engine/app/commands.h"
+#include "engine/app/finished_run.h"
 #include "engine/app/machine.h"
 #include "engine/app/stored_run.h"
 #include "engine/app/sweep_arguments.h"
@@ -10,6 +12,7 @@
 #include "engine/core/check.h"
 #include "engine/core/interrupt.h"
 #include "engine/schedule/sweep_runner.h"
+#include "engine/store/reader.h"
 #include "studies/report/load.h"
 #include "studies/report/report.h"
 
@@ -18,12 +21,24 @@ namespace {
 
 struct Options {
   SweepArguments sweep;
-  std::string out;
+  std::string out, stage, from;
   std::string cache = "results/cache";
   int threads = 0;
   std::string shard = "1/1";
   bool quiet = false, repair = false, only_failed = false, accept_mixed = false;
 };
+
+std::string NetworksText(const std::vector<ShelvedNetwork>& networks) {
+  std::string text;
+  for (const ShelvedNetwork& network : networks) {
+    const TrainingReport& report = network.model->data().report;
+    text +=
+        fmt::format("network {}: {}, best {}; R2 train {:.3f}, validation {:.3f}, held out {:.3f}; {}\n",
+                    network.name, Counted(static_cast<std::int64_t>(report.curve.size()), "epoch"),
+                    report.best_epoch, report.train.r2, report.validation.r2, report.test.r2, network.file);
+  }
+  return text;
+}
 
 // One line on what this session did, with the real-time factor per core.
 void Tell(const SweepSummary& summary, const std::string& dir) {
@@ -38,25 +53,68 @@ void Tell(const SweepSummary& summary, const std::string& dir) {
                flown.simulated_s / 3600, flown.wall_s, Counted(flown.threads, "thread"),
                flown.simulated_s / flown.wall_s / flown.threads);
   fmt::print("\n");
-  for (const ShelvedNetwork& network : summary.networks) {
-    const TrainingReport& report = network.model->data().report;
-    fmt::print("network {}: {}, best {}; R2 train {:.3f}, validation {:.3f}, held out {:.3f}; {}\n",
-               network.name, Counted(static_cast<std::int64_t>(report.curve.size()), "epoch"),
-               report.best_epoch, report.train.r2, report.validation.r2, report.test.r2, network.file);
-  }
+  fmt::print("{}", NetworksText(summary.networks));
   if (!summary.waiting_stage.empty())
     fmt::print("stage {} waits: missions that it builds on are missing or failed\n", summary.waiting_stage);
+}
+
+int ToldEnd() {
+  const bool requeue = AsksRequeue(InterruptSignal());
+  fmt::print(stderr, "{}: what is stored is kept; the same command continues\n",
+             requeue ? fmt::format("ended by {}", SignalName(InterruptSignal())) : "interrupted");
+  return requeue ? kRequeue : kInterrupted;
+}
+
+// A part of a training stage leaves networks in the cache and needs no store of its own.
+bool IsPartOfTraining(const SweepPlan& plan, const Options& options, const Shard& shard) {
+  return shard.count > 1 && std::any_of(plan.stages.begin(), plan.stages.end(), [&](const Stage& stage) {
+           return stage.name == options.stage && stage.kind == StageKind::kTrain;
+         });
+}
+
+// UserError unless all is stored that the training stage learns from.
+void CheckFoundation(const SweepPlan& plan, const Options& options) {
+  ResultReader reader(options.from);
+  if (reader.StoredRecipe().plan_text != plan.CanonicalText())
+    throw UserError(fmt::format("{}: holds results of another plan; give another --from", options.from));
+  const std::vector<RunId> stored = reader.Stored();
+  for (const Stage& stage : plan.stages)
+    if (stage.name == options.stage) CheckReady(plan, stage, stored, options.from, HalfWidth);
+}
+
+int TrainAPart(const SweepPlan& plan, const Options& options, const Shard& shard) {
+  if (options.from.empty())
+    throw UserError(
+        "--from: is missing; a part of a training stage learns from the run that holds the warm-up");
+  CheckTraining(plan);
+  CheckFoundation(plan, options);
+  InstallInterruptHandler();
+  const std::vector<ShelvedNetwork> networks =
+      TrainPart(plan,
+                {options.stage, options.from, options.cache, ThreadsFor(options.threads), &InterruptFlag(),
+                 stderr, options.quiet},
+                shard);
+  if (InterruptFlag()) return ToldEnd();
+  if (!options.quiet) fmt::print("{}", NetworksText(networks));
+  return kDone;
 }
 
 int Run(const Options& options) {
   const SweepPlan plan = options.sweep.Load();
   const Shard shard = ParseShard(options.shard);
   ThreadsFor(options.threads);  // refused before worlds are built
+  if (IsPartOfTraining(plan, options, shard)) return TrainAPart(plan, options, shard);
+  const std::string dir = options.out.empty() ? DefaultRunDir(plan) : options.out;
+  const bool all_of_it = shard.count == 1 && options.stage.empty() && !options.repair &&
+                         !options.only_failed && !options.accept_mixed;
+  if (all_of_it && TellFinishedRun(plan, dir, options.quiet)) return kDone;
   const Inputs inputs(plan);
   InstallInterruptHandler();
 
   SweepOptions sweep;
-  sweep.dir = options.out.empty() ? DefaultRunDir(plan) : options.out;
+  sweep.dir = dir;
+  sweep.stage = options.stage;
+  sweep.foundation = options.from;
   sweep.cache_dir = options.cache;
   sweep.shard = shard;
   sweep.schedule.threads = options.threads;
@@ -71,16 +129,16 @@ int Run(const Options& options) {
   sweep.notes.emplace("sweep question", plan.question);
   const SweepSummary summary = RunSweep(plan, inputs, sweep);
 
+  std::string table;
   if (!options.quiet) {
-    if (!summary.flown.interrupted) fmt::print("{}\n", ReportText(MakeReport(LoadRun(sweep.dir))));
+    if (!summary.flown.interrupted) table = ReportText(MakeReport(LoadRun(sweep.dir)));
+    if (!summary.flown.interrupted) fmt::print("{}\n", table);
     Tell(summary, sweep.dir);
   }
-  if (summary.flown.interrupted) {
-    const bool requeue = AsksRequeue(InterruptSignal());
-    fmt::print(stderr, "{}: what is stored is kept; the same command continues\n",
-               requeue ? fmt::format("ended by {}", SignalName(InterruptSignal())) : "interrupted");
-    return requeue ? kRequeue : kInterrupted;
-  }
+  if (summary.flown.interrupted) return ToldEnd();
+  if (all_of_it && summary.flown.failed == 0 && summary.waiting_stage.empty())
+    RememberFinishedRun(dir, summary.stored_before + summary.flown.stored, table,
+                        NetworksText(summary.networks));
   return summary.flown.failed > 0 ? kMissionsFailed : kDone;
 }
 
@@ -93,6 +151,13 @@ Command AddRun(CLI::App& program) {
   options->sweep.AddTo(*parser);
   parser->add_option("--out", options->out, "Run directory; default results/runs/<sweep name>")
       ->check(NotEmpty());
+  parser->add_option("--stage", options->stage, "Fly or train this stage alone")->check(NotEmpty());
+  parser
+      ->add_option("--from", options->from,
+                   "Run directory, only read, that holds the missions and networks that --stage builds on; "
+                   "default --out")
+      ->check(NotEmpty())
+      ->needs("--stage");
   parser
       ->add_option("--cache", options->cache,
                    "Where trained networks are kept for all sweeps; default results/cache")

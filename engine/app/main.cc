@@ -11,6 +11,7 @@
 #include <new>
 #include <system_error>
 
+#include "engine/app/command_slurm.h"
 #include "engine/app/commands.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
@@ -25,11 +26,11 @@ namespace ed3r {
 namespace {
 
 std::vector<Command> AddCommands(CLI::App& program) {
-  return {AddRun(program),     AddPlan(program),   AddStatus(program),  AddReport(program),
-          AddCompare(program), AddDigest(program), AddMerge(program),   AddVerify(program),
-          AddDiff(program),    AddReplay(program), AddExplain(program), AddParams(program),
-          AddPhysics(program), AddFit(program),    AddWorld(program),   AddFrames(program),
-          AddDetect(program),  AddExport(program), AddDoctor(program)};
+  return {AddRun(program),     AddPlan(program),    AddStatus(program), AddReport(program),
+          AddCompare(program), AddDigest(program),  AddMerge(program),  AddSlurm(program),
+          AddVerify(program),  AddDiff(program),    AddReplay(program), AddExplain(program),
+          AddParams(program),  AddPhysics(program), AddFit(program),    AddWorld(program),
+          AddFrames(program),  AddDetect(program),  AddExport(program), AddDoctor(program)};
 }
 
 // What is wrong with a command line that the parser refuses. A word left over that no command took should have been a

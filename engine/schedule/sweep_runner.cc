@@ -1,8 +1,10 @@
 #include "engine/schedule/sweep_runner.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <numeric>
 #include <set>
@@ -11,11 +13,15 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/math_library.h"
+#include "engine/core/suggest.h"
 #include "engine/core/version.h"
 #include "engine/mission/mission.h"
 #include "engine/mission/scenario.h"
 #include "engine/schedule/input_files.h"
+#include "engine/schedule/progress_of_stage.h"
 #include "engine/schedule/recorder.h"
+#include "engine/store/reader.h"
+#include "engine/store/schema.h"
 #include "engine/store/store.h"
 
 namespace ed3r {
@@ -50,14 +56,13 @@ std::int64_t StoredOfStage(const std::vector<RunId>& stored, int stage) {
   return std::count_if(stored.begin(), stored.end(), [stage](const RunId& id) { return id.stage == stage; });
 }
 
-bool Complete(const SweepPlan& plan, const std::vector<RunId>& stored, const std::string& stage_name) {
-  for (std::size_t i = 0; i < plan.stages.size(); ++i) {
-    const Stage& stage = plan.stages[i];
-    if (stage.name != stage_name) continue;
-    return StoredOfStage(stored, static_cast<int>(i)) ==
-           static_cast<std::int64_t>(stage.arms.size()) * stage.missions;
-  }
-  throw InternalError("a stage waits for '" + stage_name + "', which the plan does not have");
+void CheckStageName(const SweepPlan& plan, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Stage& stage : plan.stages) names.push_back(stage.name);
+  if (name.empty() || std::find(names.begin(), names.end(), name) != names.end()) return;
+  const std::string near = NearestWord(name, names);
+  throw UserError(fmt::format("{}: no stage '{}'; allowed: {}{}", plan.file, name, fmt::join(names, ", "),
+                              near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
 
 }  // namespace
@@ -115,14 +120,15 @@ class Stages {
   SweepSummary Run() {
     if (options_.only_failed) again_ = store_->Failed();
     for (std::size_t i = 0; i < plan_.stages.size() && !summary_.flown.interrupted; ++i) {
+      if (!options_.stage.empty() && plan_.stages[i].name != options_.stage) continue;
+      if (!options_.stage.empty())
+        CheckReady(plan_, plan_.stages[i], Foundation(), FoundationDir(), options_.half_width);
       if (options_.only_failed && !AnyAgainFrom(static_cast<int>(i))) break;
-      const std::vector<RunId> stored = store_->Stored();
-      if (!Ready(plan_.stages[i], stored)) {
+      if (!Ready(plan_.stages[i])) {
         summary_.waiting_stage = plan_.stages[i].name;
         break;
       }
-      plan_.stages[i].kind == StageKind::kTrain ? Train(plan_.stages[i].name)
-                                                : Fly(static_cast<int>(i), stored);
+      plan_.stages[i].kind == StageKind::kTrain ? Train(plan_.stages[i].name) : Fly(static_cast<int>(i));
     }
     return std::move(summary_);
   }
@@ -137,17 +143,65 @@ class Stages {
     summary_.repaired = damage;
   }
 
-  bool Ready(const Stage& stage, const std::vector<RunId>& stored) const {
+  const std::string& FoundationDir() const {
+    return options_.foundation.empty() ? options_.dir : options_.foundation;
+  }
+
+  // What is stored where the stages before are.
+  std::vector<RunId> Foundation() const {
+    if (options_.foundation.empty()) return store_->Stored();
+    if (!std::filesystem::exists(std::filesystem::path(options_.foundation) / kResultsFile)) return {};
+    ResultReader reader(options_.foundation);
+    if (const auto difference = DifferenceOfRun(reader))
+      throw UserError(fmt::format("{}: holds results of another recipe: {}; give another --from",
+                                  options_.foundation, *difference));
+    return reader.Stored();
+  }
+
+  std::optional<std::string> DifferenceOfRun(const ResultReader& reader) const {
+    const Recipe here = RecipeOf(plan_, inputs_, options_);
+    if (auto difference = Difference(reader.StoredRecipe(), here)) return difference;
+    return options_.accept_mixed ? std::nullopt : CodeDifference(reader.StoredRecipe().code, here.code);
+  }
+
+  bool Ready(const Stage& stage) const {
+    if (stage.after.empty()) return true;
+    const std::vector<RunId> stored = Foundation();
     return std::all_of(stage.after.begin(), stage.after.end(), [&](const std::string& name) {
-      return finished_.contains(name) || Complete(plan_, stored, name);
+      return finished_.contains(name) ||
+             ProgressOf(plan_, name, stored, FoundationDir(), options_.half_width).open.empty();
     });
   }
 
-  void Fly(int stage, const std::vector<RunId>& stored) {
-    if (plan_.stages[static_cast<std::size_t>(stage)].precision && !options_.only_failed)
-      FlyUntilPrecise(stage);
-    else
-      FlyThese(stage, Todo(layout_, stage, options_.shard, stored), stored);
+  void Fly(int stage) {
+    FetchNetworks(plan_.stages[static_cast<std::size_t>(stage)]);
+    const bool precise = plan_.stages[static_cast<std::size_t>(stage)].precision.has_value();
+    if (precise && options_.foundation.empty() && !options_.only_failed) return FlyUntilPrecise(stage);
+    const std::vector<RunId> stored = store_->Stored();
+    std::vector<RunId> todo = Todo(layout_, stage, options_.shard, stored);
+    if (precise && !options_.only_failed) LeaveThisRound(stage, todo);
+    FlyThese(stage, todo, stored);
+  }
+
+  void LeaveThisRound(int stage, std::vector<RunId>& todo) const {
+    const StageProgress round = ProgressOf(plan_, plan_.stages[static_cast<std::size_t>(stage)].name,
+                                           Foundation(), FoundationDir(), options_.half_width);
+    std::erase_if(todo, [&](const RunId& id) { return !round.Asks(id); });
+  }
+
+  // Those that the training stage left in the store, where this session did not train.
+  void FetchNetworks(const Stage& stage) {
+    const bool asked = std::any_of(stage.arms.begin(), stage.arms.end(),
+                                   [](const Arm& arm) { return NeedsTraining(arm.config); });
+    if (!asked || networks_ != nullptr) return;
+    const FlownNetworks flown = ResultReader(FoundationDir()).Networks();
+    if (flown.uses.empty())
+      throw UserError(fmt::format(
+          "{}: holds no networks, which stage {} asks; 'ed3r run SWEEP --stage NAME --out {}' with "
+          "the name of the training stage puts them there",
+          FoundationDir(), stage.name, FoundationDir()));
+    networks_ = NetworkShelf::From(flown, FoundationDir());
+    store_->PutNetworks(flown);
   }
 
   bool AnyAgainFrom(int stage) const {
@@ -227,9 +281,9 @@ class Stages {
 
   void Train(const std::string& stage) {
     store_->Commit();
-    std::unique_ptr<NetworkShelf> trained =
-        TrainNetworks(plan_, {stage, options_.dir, options_.cache_dir, ThreadsFor(options_.schedule.threads),
-                              options_.schedule.stop, options_.schedule.progress, options_.schedule.quiet});
+    std::unique_ptr<NetworkShelf> trained = TrainNetworks(
+        plan_, {stage, FoundationDir(), options_.cache_dir, ThreadsFor(options_.schedule.threads),
+                options_.schedule.stop, options_.schedule.progress, options_.schedule.quiet});
     if (trained == nullptr) {
       summary_.flown.interrupted = true;
       return;
@@ -255,6 +309,7 @@ class Stages {
 }  // namespace
 
 SweepSummary RunSweep(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options) {
+  CheckStageName(plan, options.stage);
   for (const Stage& stage : plan.stages)
     for (const Arm& arm : stage.arms)
       if (stage.kind == StageKind::kFly && IsOutside(arm) && !options.outside)
@@ -264,9 +319,10 @@ SweepSummary RunSweep(const SweepPlan& plan, const Inputs& inputs, const SweepOp
                         "Python module",
                         plan.file, stage.name, arm.name, kOutsideStrategy));
   for (const Stage& stage : plan.stages)
-    if (stage.precision && options.shard.count > 1)
+    if (stage.precision && options.shard.count > 1 && options.foundation.empty())
       throw UserError(
-          fmt::format("{}: stage {}: a precision needs all missions of an arm; fly it without --shard",
+          fmt::format("{}: stage {}: a precision needs all missions of an arm; fly it without --shard, or in "
+                      "rounds as 'ed3r slurm' does",
                       plan.file, stage.name));
   return Stages(plan, inputs, options).Run();
 }

@@ -1,7 +1,6 @@
 // Runs a sweep from its plan to stored results: stage by stage, each resumable.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "engine/mission/mission.h"
 #include "engine/schedule/inputs.h"
+#include "engine/schedule/progress_of_stage.h"
 #include "engine/schedule/scheduler.h"
 #include "engine/schedule/todo.h"
 #include "engine/schedule/training_stage.h"
@@ -27,11 +27,6 @@ CodeIdentities CodeOf(const SweepPlan& plan);
 MissionTask TaskOf(const SweepPlan& plan, const Inputs& inputs, const NetworkShelf* networks,
                    const RunId& id);
 
-// Half of the width of the 95 % interval that the first `missions` missions of an arm, all stored in `dir`, give for a
-// metric, in its unit; NaN where they give none.
-using HalfWidthFn = std::function<double(const std::string& dir, int stage, int arm, int missions,
-                                         const std::string& metric)>;
-
 // Flies missions of one arm whose decisions come from outside (strategy external). Each that has ended is offered, or why it
 // failed; what is left when `stop` becomes true is flown another time. What it throws ends the sweep; what was offered is
 // kept.
@@ -41,7 +36,9 @@ using OutsideFn = std::function<void(const Arm& arm, const std::vector<RunId>& t
 
 struct SweepOptions {
   std::string dir;
-  std::string cache_dir;  // networks of all sweeps
+  std::string stage = {};       // fly or train only this one; "" all
+  std::string foundation = {};  // the run directory that holds what the stage builds on; "" dir itself
+  std::string cache_dir;        // networks of all sweeps
   Shard shard;
   ScheduleOptions schedule;
   bool repair = false;                       // take damaged missions out and fly them again
@@ -63,6 +60,10 @@ struct SweepSummary {
 
 // Flies what is missing. The same call again continues where it stopped. Everything that is stored is compared with its
 // checksums first: UserError that names the first damaged mission, unless it may be repaired.
+//
+// A task of a batch system gives `stage` and `foundation`: it flies its shard of one stage into a store of its own and
+// reads the missions and networks of the stages before from the merged run, which it does not change. Of a stage with a
+// precision it flies its shard of the round that is due by what the foundation holds.
 SweepSummary RunSweep(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options);
 
 }  // namespace ed3r

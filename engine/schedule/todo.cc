@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <utility>
 
 #include "engine/core/check.h"
@@ -17,6 +18,12 @@ bool ParseNumber(std::string_view text, std::int64_t& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
+// Which shard a deal begins with: multiples of the golden section as a 64-bit fraction, which spread evenly and recur never.
+std::int64_t FirstShardOf(std::int64_t deal, std::int64_t count) {
+  const std::uint64_t fraction = static_cast<std::uint64_t>(deal) * 0x9e3779b97f4a7c15;
+  return static_cast<std::int64_t>(((fraction >> 32) * static_cast<std::uint64_t>(count)) >> 32);
+}
+
 }  // namespace
 
 Shard ParseShard(std::string_view text) {
@@ -28,8 +35,12 @@ Shard ParseShard(std::string_view text) {
   return {index % count, count};
 }
 
+std::int64_t ShardOf(std::int64_t linear_index, std::int64_t count) {
+  return (linear_index % count + FirstShardOf(linear_index / count, count)) % count;
+}
+
 bool InShard(std::int64_t linear_index, const Shard& shard) {
-  return linear_index % shard.count == shard.index;
+  return ShardOf(linear_index, shard.count) == shard.index;
 }
 
 std::vector<RunId> Todo(const RunLayout& layout, int stage, const Shard& shard,

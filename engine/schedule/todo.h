@@ -11,8 +11,8 @@
 
 namespace ed3r {
 
-// Part `index` of `count` parts: the missions whose number, counted over the whole plan, leaves this
-// remainder. Neighbours go to different shards, so that each gets its share of every arm.
+// Part `index` of `count`. Missions are dealt in plan order, one to each part, so that each gets its share of every
+// arm; a deal begins with another part each time, because sites recur at a fixed distance and far ones take longer.
 struct Shard {
   std::int64_t index = 0;
   std::int64_t count = 1;
@@ -21,6 +21,9 @@ struct Shard {
 // "I/N" with 0 <= I <= N. Both ways of counting shards work, from 0 and from 1, because N/N is the same shard
 // as 0/N. UserError for anything else.
 Shard ParseShard(std::string_view text);
+
+// The number of the shard, below `count`, that a mission belongs to.
+std::int64_t ShardOf(std::int64_t linear_index, std::int64_t count);
 
 bool InShard(std::int64_t linear_index, const Shard& shard);
 

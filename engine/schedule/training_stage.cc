@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "engine/core/check.h"
@@ -195,35 +196,56 @@ void CheckTraining(const SweepPlan& plan) {
 // Collects what is to be trained, each network once, and hands the results out.
 class TrainingStage {
  public:
-  TrainingStage(const SweepPlan& plan, const TrainingOptions& options) : plan_(plan), options_(options) {}
+  TrainingStage(const SweepPlan& plan, const TrainingOptions& options) : plan_(plan), options_(options) {
+    Collect();
+  }
 
+  std::size_t Jobs() const { return jobs_.size(); }
+  std::vector<bool> InCache();
   std::unique_ptr<NetworkShelf> Run();
+  std::vector<ShelvedNetwork> RunPart(const Shard& part);
 
  private:
   struct ArmNeed {
     int stage, arm;
     std::vector<std::size_t> rc_jobs, robot_jobs;  // by training seed
   };
+  // The samples of one warm-up and reward, empty until something is trained on them.
+  struct Lesson {
+    std::pair<int, int> warmup;
+    AgentsConfig agents;
+    Samples samples;
+  };
   void Collect();
   std::size_t AddJob(const NetworkDesign& design, const DataSet& data, const Arm& arm,
                      std::string_view source, int seed);
   const Samples& SamplesFor(std::pair<int, int> warmup, const AgentsConfig& agents);
+  void ReadLessons(const std::vector<TrainJob>& jobs);
+  // Null where it was stopped.
+  std::vector<std::shared_ptr<const Model>> Train(const std::vector<TrainJob>& jobs,
+                                                  const std::vector<std::string>& names);
 
   const SweepPlan& plan_;
   const TrainingOptions& options_;
-  std::map<std::string, Samples> samples_;
+  std::map<std::string, Lesson> lessons_;
   std::vector<TrainJob> jobs_;
   std::vector<std::string> names_;
   std::vector<ArmNeed> needs_;
 };
 
 const Samples& TrainingStage::SamplesFor(std::pair<int, int> warmup, const AgentsConfig& agents) {
-  const std::string key = RewardKey(warmup, agents);
-  if (!samples_.contains(key)) {
+  return lessons_.try_emplace(RewardKey(warmup, agents), Lesson{warmup, agents, {}}).first->second.samples;
+}
+
+void TrainingStage::ReadLessons(const std::vector<TrainJob>& jobs) {
+  for (auto& [key, lesson] : lessons_) {
+    const bool needed = std::any_of(jobs.begin(), jobs.end(), [&lesson = lesson](const TrainJob& job) {
+      return job.data == &lesson.samples.rc || job.data == &lesson.samples.robot;
+    });
+    if (!needed) continue;
     ResultReader reader(options_.run_dir);
-    samples_.emplace(key, ReadSamples(reader, plan_, warmup, agents));
+    lesson.samples = ReadSamples(reader, plan_, lesson.warmup, lesson.agents);
   }
-  return samples_.at(key);
 }
 
 std::size_t TrainingStage::AddJob(const NetworkDesign& design, const DataSet& data, const Arm& arm,
@@ -238,7 +260,7 @@ std::size_t TrainingStage::AddJob(const NetworkDesign& design, const DataSet& da
   std::string name = fmt::format("{} from {}{}, eta_min {}, seed {}", design.name, source,
                                  arm.variant.empty() ? "" : fmt::format(" of {}", arm.variant),
                                  arm.config.agents.eta_min, job.seed);
-  for (std::size_t i = 0; i < jobs_.size(); ++i)
+  for (std::size_t i = 0; i < jobs_.size(); ++i)  // keys of the jobs alone: no sample is read yet
     if (names_[i] == name && jobs_[i].data == job.data && TrainingKey(jobs_[i]) == TrainingKey(job)) return i;
   jobs_.push_back(std::move(job));
   names_.push_back(std::move(name));
@@ -267,8 +289,9 @@ void TrainingStage::Collect() {
   }
 }
 
-std::unique_ptr<NetworkShelf> TrainingStage::Run() {
-  Collect();
+std::vector<std::shared_ptr<const Model>> TrainingStage::Train(const std::vector<TrainJob>& jobs,
+                                                               const std::vector<std::string>& names) {
+  ReadLessons(jobs);
   TrainAllOptions train;
   train.cache = options_.cache_dir;
   train.threads = options_.threads;
@@ -277,14 +300,27 @@ std::unique_ptr<NetworkShelf> TrainingStage::Run() {
   std::size_t done = 0;
   train.on_done = [&](std::size_t) { ++done; };
   train.on_epoch = [&](std::size_t job, int epoch, const EpochLoss& loss) {
-    line.Show(fmt::format("training  {}/{} networks  {}: epoch {}, validation loss {:.4f}", done,
-                          jobs_.size(), names_[job], epoch, loss.validation));
+    line.Show(fmt::format("training  {}/{} networks  {}: epoch {}, validation loss {:.4f}", done, jobs.size(),
+                          names[job], epoch, loss.validation));
   };
-  const std::vector<std::shared_ptr<const Model>> models = TrainAll(jobs_, train);
+  std::vector<std::shared_ptr<const Model>> models = TrainAll(jobs, train);
   line.Clear();
   if (std::any_of(models.begin(), models.end(), [](const auto& model) { return model == nullptr; }))
-    return nullptr;
+    models.clear();
+  return models;
+}
 
+std::vector<bool> TrainingStage::InCache() {
+  ReadLessons(jobs_);
+  std::vector<bool> found;
+  for (const TrainJob& job : jobs_)
+    found.push_back(std::filesystem::exists(CachePath(options_.cache_dir, job)));
+  return found;
+}
+
+std::unique_ptr<NetworkShelf> TrainingStage::Run() {
+  const std::vector<std::shared_ptr<const Model>> models = Train(jobs_, names_);
+  if (models.empty() && !jobs_.empty()) return nullptr;
   auto shelf = std::make_unique<NetworkShelf>();
   for (std::size_t i = 0; i < jobs_.size(); ++i)
     shelf->all_.push_back({names_[i], CachePath(options_.cache_dir, jobs_[i]), models[i]});
@@ -297,8 +333,37 @@ std::unique_ptr<NetworkShelf> TrainingStage::Run() {
   return shelf;
 }
 
+std::vector<ShelvedNetwork> TrainingStage::RunPart(const Shard& part) {
+  std::vector<TrainJob> jobs;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < jobs_.size(); ++i) {
+    if (!InShard(static_cast<std::int64_t>(i), part)) continue;
+    jobs.push_back(jobs_[i]);
+    names.push_back(names_[i]);
+  }
+  const std::vector<std::shared_ptr<const Model>> models = Train(jobs, names);
+  std::vector<ShelvedNetwork> networks;
+  for (std::size_t i = 0; i < models.size(); ++i)
+    networks.push_back({names[i], CachePath(options_.cache_dir, jobs[i]), models[i]});
+  return networks;
+}
+
 std::unique_ptr<NetworkShelf> TrainNetworks(const SweepPlan& plan, const TrainingOptions& options) {
   return TrainingStage(plan, options).Run();
+}
+
+std::int64_t CountNetworks(const SweepPlan& plan) {
+  const TrainingOptions nothing;
+  return static_cast<std::int64_t>(TrainingStage(plan, nothing).Jobs());
+}
+
+std::vector<bool> NetworksInCache(const SweepPlan& plan, const TrainingOptions& options) {
+  return TrainingStage(plan, options).InCache();
+}
+
+std::vector<ShelvedNetwork> TrainPart(const SweepPlan& plan, const TrainingOptions& options,
+                                      const Shard& part) {
+  return TrainingStage(plan, options).RunPart(part);
 }
 
 }  // namespace ed3r

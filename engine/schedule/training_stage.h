@@ -6,6 +6,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -15,6 +16,7 @@
 
 #include "engine/agents/context.h"
 #include "engine/rfnn/trainer.h"
+#include "engine/schedule/todo.h"
 #include "engine/store/networks.h"
 #include "engine/sweep/plan.h"
 
@@ -77,5 +79,16 @@ void CheckTraining(const SweepPlan& plan);
 // is learned from a warm-up that is not flown out. Null when stopped: the same call again continues. NetworkShelf::From() takes them from
 // a run that has flown.
 std::unique_ptr<NetworkShelf> TrainNetworks(const SweepPlan& plan, const TrainingOptions& options);
+
+// How many networks TrainNetworks() would train where the cache holds none. Reads nothing.
+std::int64_t CountNetworks(const SweepPlan& plan);
+
+// By network: whether the cache holds it already. Reads the warm-up of `options.run_dir`.
+std::vector<bool> NetworksInCache(const SweepPlan& plan, const TrainingOptions& options);
+
+// Network i of these for every i that leaves the part's remainder, into the cache: tasks of a batch system share the work,
+// and TrainNetworks() then finds them all. Empty when stopped, or where the part has no network.
+std::vector<ShelvedNetwork> TrainPart(const SweepPlan& plan, const TrainingOptions& options,
+                                      const Shard& part);
 
 }  // namespace ed3r

@@ -12,16 +12,32 @@
 #include "engine/core/check.h"
 
 namespace ed3r {
+namespace {
 
-std::optional<DirectoryLock> DirectoryLock::TryLock(const std::string& dir) {
-  // O_CLOEXEC: a program that this process starts must not keep the lock when the process is gone.
+// O_CLOEXEC: a program that this process starts must not keep the lock when the process is gone.
+int OpenDirectory(const std::string& dir) {
   const int descriptor = open(dir.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) throw UserError(fmt::format("{}: {}", dir, std::strerror(errno)));
-  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return DirectoryLock(descriptor);
-  const int error = errno;
-  close(descriptor);
-  if (error == EWOULDBLOCK) return std::nullopt;
-  throw UserError(fmt::format("{}: cannot be locked: {}", dir, std::strerror(error)));
+  return descriptor;
+}
+
+// A lock that is held must keep a second one away.
+bool Excludes(const std::string& dir) {
+  const int second = OpenDirectory(dir);
+  const bool excludes = flock(second, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(second);
+  return excludes;
+}
+
+}  // namespace
+
+DirectoryLock::Attempt DirectoryLock::TryLock(const std::string& dir) {
+  DirectoryLock lock(OpenDirectory(dir));
+  if (flock(lock.descriptor_, LOCK_EX | LOCK_NB) == 0) {
+    if (!Excludes(dir)) return {std::nullopt, false};
+    return {std::move(lock), true};
+  }
+  return {std::nullopt, errno == EWOULDBLOCK};
 }
 
 DirectoryLock::~DirectoryLock() {

@@ -1,5 +1,6 @@
-// One writer per run directory. The lock is the kernel's (flock on the directory itself): it leaves no file
-// behind and ends with the process, however that ends. It holds among the processes of one machine.
+// One writer per run directory, by the kernel's lock (flock on the directory itself): it leaves no file behind and ends with
+// the process, however that ends. It holds among the processes of one machine; for directories that several machines
+// share see owner_file.h.
 #pragma once
 
 #include <optional>
@@ -9,9 +10,9 @@ namespace ed3r {
 
 class DirectoryLock {
  public:
-  // Nothing when another process (or another object of this one) holds the lock. UserError when the directory
-  // cannot be opened.
-  static std::optional<DirectoryLock> TryLock(const std::string& dir);
+  struct Attempt;
+  // UserError when the directory cannot be opened.
+  static Attempt TryLock(const std::string& dir);
   ~DirectoryLock();
   DirectoryLock(DirectoryLock&& other) noexcept;
   DirectoryLock& operator=(DirectoryLock&&) = delete;
@@ -19,6 +20,12 @@ class DirectoryLock {
  private:
   explicit DirectoryLock(int descriptor) : descriptor_(descriptor) {}
   int descriptor_;
+};
+
+struct DirectoryLock::Attempt {
+  std::optional<DirectoryLock> lock = {};  // none when another process (or object of this one) holds it
+  // False on a file system that has no such locks, or says that it locks and does not.
+  bool supported = true;
 };
 
 }  // namespace ed3r

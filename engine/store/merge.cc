@@ -2,18 +2,50 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "engine/core/check.h"
 #include "engine/store/damage.h"
 #include "engine/store/digest.h"
 #include "engine/store/reader.h"
 #include "engine/store/records.h"
+#include "engine/store/schema.h"
 #include "engine/store/store_file.h"
 
 namespace ed3r {
 namespace {
+
+// Sources that are read side by side: each keeps a file open and a few megabytes. Read so, their missions come in plan order,
+// however they were divided, and the target's tables grow at their ends.
+constexpr std::size_t kReadAtOnce = 128;
+
+// The missions of one store in plan order, as of one moment.
+class Source {
+ public:
+  explicit Source(const std::string& dir)
+      : reader_(dir),
+        database_((std::filesystem::path(dir) / kResultsFile).string(), Connection::Access::kReadOnly),
+        moment_(database_, Transaction::Kind::kRead),
+        cursor_(database_, reader_.Layout(), "", Steps::kLoad),
+        more_(cursor_.Next()) {}
+
+  ResultReader& reader() { return reader_; }
+  bool more() const { return more_; }
+  const MissionCursor& cursor() const { return cursor_; }
+  std::pair<std::int64_t, std::int64_t> Key() const { return {cursor_.run(), cursor_.mission()}; }
+  void Next() { more_ = cursor_.Next(); }
+
+ private:
+  ResultReader reader_;
+  Connection database_;
+  Transaction moment_;
+  MissionCursor cursor_;
+  bool more_;
+};
 
 // A result file that others are merged into; the transaction is the caller's.
 class Target {
@@ -32,16 +64,29 @@ class Target {
         put_note_(database, "INSERT OR REPLACE INTO session_notes VALUES (?, ?, ?)"),
         has_mission_(database, "SELECT 1 FROM missions WHERE run = ? AND mission = ?") {}
 
-  void Add(ResultReader& source) {
-    AddSessions(source);
-    PutNetworks(database_, layout_, source.Networks());
-    source.ForEachMission(Steps::kLoad, [&](const StoredMission& mission) { AddMission(source, mission); });
-    AddFailures(source);
+  void Add(const std::vector<std::unique_ptr<Source>>& sources) {
+    for (const auto& source : sources) {
+      AddSessions(source->reader());
+      PutNetworks(database_, layout_, source->reader().Networks());
+    }
+    while (Source* next = FirstOf(sources)) {
+      AddMission(next->reader().dir(), next->cursor());
+      next->Next();
+    }
+    for (const auto& source : sources) AddFailures(source->reader());
   }
 
   const MergeSummary& summary() const { return summary_; }
 
  private:
+  // The one whose next mission comes first in the plan.
+  static Source* FirstOf(const std::vector<std::unique_ptr<Source>>& sources) {
+    Source* first = nullptr;
+    for (const auto& source : sources)
+      if (source->more() && (first == nullptr || source->Key() < first->Key())) first = source.get();
+    return first;
+  }
+
   void AddSessions(ResultReader& source) {
     for (const Session& session : source.Sessions()) {
       put_session_.Run(session.id, session.host, session.process, session.begun_utc, session.ended_utc);
@@ -49,18 +94,18 @@ class Target {
     }
   }
 
-  void AddMission(const ResultReader& source, const StoredMission& mission) {
-    const std::int64_t run = source.Layout().RunIndex(mission.id);
-    if (cursor_.Seek(run, mission.id.mission)) {
+  void AddMission(const std::string& from, const MissionCursor& mission) {
+    const RunId id = mission.Checked();
+    if (cursor_.Seek(mission.run(), mission.mission())) {
       cursor_.Checked();
-      if (CanonicalBytes(cursor_.record()) != CanonicalBytes(mission.record))
+      if (CanonicalBytes(cursor_.record()) != CanonicalBytes(mission.record()))
         throw UserError(fmt::format("{}: {} differs from the record of another store that is merged into {}",
-                                    source.dir(), source.Layout().Describe(mission.id), dir_));
+                                    from, layout_.Describe(id), dir_));
       ++summary_.present;
       return;
     }
-    writer_.InsertMission(mission.id, mission.record);
-    writer_.InsertTiming(mission.id, mission.session, mission.wall_s);
+    writer_.InsertMission(id, mission.record());
+    if (!std::isnan(mission.wall_s())) writer_.InsertTiming(id, mission.session(), mission.wall_s());
     ++summary_.added;
   }
 
@@ -98,6 +143,15 @@ void CheckSameRecipe(const ResultReader& first, const ResultReader& other) {
                                 other.dir()));
 }
 
+// Of the first, when those of all others are equal.
+std::pair<Recipe, RunLayout> CommonRecipe(const std::vector<std::string>& dirs) {
+  ResultReader first(dirs.front());
+  for (const std::string& dir : dirs) CheckSameRecipe(first, ResultReader(dir));
+  Recipe recipe = first.StoredRecipe();
+  recipe.files = first.Files();
+  return {std::move(recipe), first.Layout()};
+}
+
 // What is in `out` already and in no source would come through unseen.
 void CheckWhole(Connection& database, const RunLayout& layout) {
   const std::vector<DamagedMission> damage = FindDamage(database, layout);
@@ -112,22 +166,21 @@ bool SameDirectory(const std::string& a, const std::string& b) {
 
 MergeSummary MergeStores(const std::string& out, const std::vector<std::string>& dirs) {
   if (dirs.empty()) throw UserError(fmt::format("{}: nothing to merge into it", out));
-  std::vector<std::unique_ptr<ResultReader>> sources;
-  for (const std::string& dir : dirs) {
-    sources.push_back(std::make_unique<ResultReader>(dir));
-    CheckSameRecipe(*sources.front(), *sources.back());
-  }
-  Recipe recipe = sources.front()->StoredRecipe();
-  recipe.files = sources.front()->Files();
-  const RunLayout layout = sources.front()->Layout();
+  const auto [recipe, layout] = CommonRecipe(dirs);
   // What is in `out` need not be copied; and a reader on it would keep its file in WAL mode.
-  std::erase_if(sources, [&](const auto& source) { return SameDirectory(source->dir(), out); });
+  std::vector<std::string> others = dirs;
+  std::erase_if(others, [&](const std::string& dir) { return SameDirectory(dir, out); });
   StoreFile file(out, recipe, layout);
   try {
     Transaction transaction(file.database(), Transaction::Kind::kWrite);
     CheckWhole(file.database(), layout);
     Target target(file.database(), layout, out);
-    for (const auto& source : sources) target.Add(*source);
+    for (std::size_t begin = 0; begin < others.size(); begin += kReadAtOnce) {
+      std::vector<std::unique_ptr<Source>> sources;
+      for (std::size_t i = begin; i < std::min(begin + kReadAtOnce, others.size()); ++i)
+        sources.push_back(std::make_unique<Source>(others[i]));
+      target.Add(sources);
+    }
     MergeSummary summary = target.summary();
     summary.failed = file.database().Int("SELECT count(*) FROM failures");
     transaction.Commit();

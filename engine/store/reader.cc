@@ -10,6 +10,8 @@
 #include "engine/store/damage.h"
 #include "engine/store/directory_lock.h"
 #include "engine/store/schema.h"
+#include "engine/store/sqlite_errors.h"
+#include "engine/store/store_file.h"
 
 namespace ed3r {
 namespace {
@@ -37,10 +39,22 @@ std::string ExistingFile(const std::string& dir) {
   return file.string();
 }
 
+// A file that can be read: one that a killed writer left half committed is rolled back first.
+Connection OpenToRead(const std::string& dir) {
+  const std::string file = ExistingFile(dir);
+  try {
+    Connection database(file, Connection::Access::kReadOnly);
+    database.Int("SELECT count(*) FROM sqlite_schema");
+    return database;
+  } catch (const UnfinishedCommitError&) {
+    FinishCommit(dir);
+    return Connection(file, Connection::Access::kReadOnly);
+  }
+}
+
 }  // namespace
 
-ResultReader::ResultReader(const std::string& dir)
-    : dir_(dir), database_(ExistingFile(dir), Connection::Access::kReadOnly) {
+ResultReader::ResultReader(const std::string& dir) : dir_(dir), database_(OpenToRead(dir)) {
   if (CheckFile(database_, FileUse::kRead) == FileKind::kEmpty)
     throw UserError(fmt::format("{}: no results in it yet ({} is empty)", dir, kResultsFile));
   format_ = static_cast<int>(database_.Int("PRAGMA user_version"));
@@ -55,7 +69,9 @@ FlownNetworks ResultReader::Networks() { return ReadNetworks(database_, layout_)
 
 std::vector<RunId> ResultReader::Stored() { return ReadStored(database_, layout_); }
 
-std::int64_t ResultReader::CountMissions() { return database_.Int("SELECT count(*) FROM missions"); }
+std::int64_t ResultReader::CountMissions() {
+  return database_.Int("SELECT count(*) FROM missions NOT INDEXED");
+}
 
 std::vector<ArmStatus> ResultReader::Status() {
   const Transaction moment(database_, Transaction::Kind::kRead);

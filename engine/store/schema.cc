@@ -145,6 +145,7 @@ FileKind CheckFile(Connection& database, FileUse use) {
 void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& layout) {
   database.Execute(TableDefinitions());
   database.Execute(ViewDefinition<MissionRecord>("missions") + ViewDefinition<TimestepRecord>("timesteps"));
+  CreateMissionsIndex(database);
   Statement put(database, "INSERT INTO recipe VALUES (?, ?)");
   put.Run("sweep", layout.name);
   put.Run("seed", std::to_string(layout.seed));
@@ -179,6 +180,10 @@ void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& l
 void AddFailureKind(Connection& database) {
   if (!HasFailureKind(database))
     database.Execute("ALTER TABLE failures ADD COLUMN kind TEXT NOT NULL DEFAULT ''");
+}
+
+void CreateMissionsIndex(Connection& database) {
+  database.Execute(fmt::format("CREATE INDEX IF NOT EXISTS {} ON missions (run)", kMissionsIndex));
 }
 
 void AddCode(Connection& database, const CodeIdentities& code) {
@@ -252,7 +257,7 @@ RunLayout ReadLayout(Connection& database) {
 }
 
 std::vector<RunId> ReadStored(Connection& database, const RunLayout& layout) {
-  Statement select(database, "SELECT run, mission FROM missions ORDER BY run, mission");
+  Statement select(database, "SELECT run, mission FROM missions NOT INDEXED ORDER BY run, mission");
   std::vector<RunId> stored;
   while (select.Step()) {
     const std::optional<RunId> id = layout.Place(select.Int(0), select.Int(1));

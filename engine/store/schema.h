@@ -17,7 +17,8 @@
 //                   as words; units are in the columns' names. Files of before have none.
 //
 // missions and timesteps are clustered by their keys (WITHOUT ROWID), so that every reader gets the canonical
-// order without sorting, whatever the order of arrival.
+// order without sorting, whatever the order of arrival. A small index of the missions lets counting leave the records alone;
+// files of before have none.
 //
 // Formats: 1 had no checksums, code, files and networks; its recipe had one code_version and its inputs were called
 // worlds. It is read, but not continued. Within a format, columns may be added to missions and timesteps: a file that
@@ -34,6 +35,7 @@
 namespace ed3r {
 
 inline constexpr char kResultsFile[] = "results.sqlite";
+inline constexpr char kMissionsIndex[] = "missions_by_run";
 // Raise it when a table other than missions and timesteps changes; their columns are compared by name.
 inline constexpr int kSchemaVersion = 2;
 
@@ -51,6 +53,9 @@ void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& l
 
 // Adds the column that a file of format 2 may lack. Call it in a transaction.
 void AddFailureKind(Connection& database);
+
+// Where a file of before lacks it.
+void CreateMissionsIndex(Connection& database);
 
 // Adds identities of code to those that the file knows.
 void AddCode(Connection& database, const CodeIdentities& code);

@@ -9,6 +9,7 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/utf8.h"
+#include "engine/store/sqlite_errors.h"
 
 namespace ed3r {
 namespace {
@@ -34,6 +35,25 @@ void CheckFiles(const std::string& file) {
     const std::filesystem::file_status found = std::filesystem::status(file + suffix, error);
     if (!std::filesystem::exists(found) || std::filesystem::is_regular_file(found)) continue;
     throw UserError(fmt::format("{}{}: cannot be read: {}", file, suffix, WhyNoRegularFile(file + suffix)));
+  }
+}
+
+// Codes that callers can do something about.
+void FailByExtendedCode(const std::string& file, int code, const std::string& reason) {
+  switch (code) {
+    case SQLITE_IOERR_SHMOPEN:
+    case SQLITE_IOERR_SHMSIZE:
+    case SQLITE_IOERR_SHMLOCK:
+    case SQLITE_IOERR_SHMMAP:
+    case SQLITE_PROTOCOL:
+      throw SharedMemoryError(fmt::format("{}: {} (SQLite code {})", file, reason, code));
+    case SQLITE_READONLY_ROLLBACK:
+      throw UnfinishedCommitError(
+          fmt::format("{}: a writer was killed in the midst of a commit, or is at one; the run's own command "
+                      "continues it",
+                      file));
+    default:
+      return;
   }
 }
 
@@ -77,6 +97,7 @@ bool Connection::InTransaction() const { return sqlite3_get_autocommit(database_
 
 void Connection::Fail() const {
   const std::string reason = sqlite3_errmsg(database_.get());
+  FailByExtendedCode(file_, sqlite3_extended_errcode(database_.get()), reason);
   switch (sqlite3_errcode(database_.get()) & 0xff) {  // the low byte is the kind, the rest details
     case SQLITE_NOTADB:
       throw UserError(fmt::format("{}: not a results file ({})", file_, reason));

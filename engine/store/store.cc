@@ -107,6 +107,7 @@ class SqliteStore final : public ResultStore {
   void InGroup(const Write& write) {
     ED3R_CHECK(!broken_, "a write to this store failed before");
     try {
+      file_.CheckOwned();
       if (!group_) group_.emplace(file_.database(), Transaction::Kind::kWrite);
       write();
     } catch (...) {

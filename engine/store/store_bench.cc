@@ -1,7 +1,8 @@
 // How fast and how large the store is, on as many rows as the paper's whole study: prints one line per
 // measure.
-//   build/bench/engine/store/store_bench [MISSIONS [TIMESTEPS]]
+//   build/bench/engine/store/store_bench [MISSIONS [TIMESTEPS [SHARDS]]]    with SHARDS it also merges as many stores
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -14,9 +15,11 @@
 #include "engine/store/checksums.h"
 #include "engine/store/columns.h"
 #include "engine/store/digest.h"
+#include "engine/store/merge.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
 #include "engine/store/store.h"
+#include "engine/store/tally.h"
 
 namespace ed3r {
 namespace {
@@ -135,7 +138,42 @@ void Read(const std::string& dir, double rows) {
              digest.Seconds(), text);
   const Stopwatch status;
   const auto done = reader.Status().front().done;
-  fmt::print("status             {:8.1f} ms ({} done)\n", 1e3 * status.Seconds(), done);
+  fmt::print("status, compared   {:8.1f} ms ({} done)\n", 1e3 * status.Seconds(), done);
+  const Stopwatch tally;
+  Tally counted(reader.Layout());
+  counted.Add(dir);
+  fmt::print("status, counted    {:8.1f} ms ({} done)\n", 1e3 * tally.Seconds(), counted.Arms().front().done);
+}
+
+double PeakMemory_mb() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+// Missions dealt among the shards as a batch system's tasks fly them.
+void Merge(const std::string& dir, const RunLayout& layout, int missions, int timesteps, int shards) {
+  std::vector<std::string> dirs;
+  for (int shard = 0; shard < shards; ++shard) {
+    dirs.push_back(fmt::format("{}/shards/online/{:05}", dir, shard));
+    auto store = ResultStore::Open(dirs.back(), {}, layout);
+    for (int i = shard; i < missions; i += shards)
+      store->Put({0, 0, i}, Draw(static_cast<std::uint32_t>(i), timesteps), 1.0);
+    store->Commit();
+  }
+  const double before_mb = PeakMemory_mb();
+  const Stopwatch merge;
+  MergeStores(dir + "/merged", dirs);
+  fmt::print(
+      "merge of {:4} stores {:6.0f} missions/s ({:.2f} s, peak memory {:.0f} MB before, {:.0f} MB after)\n",
+      shards, missions / merge.Seconds(), merge.Seconds(), before_mb, PeakMemory_mb());
+  const Stopwatch again;
+  MergeStores(dir + "/merged", dirs);
+  fmt::print("merged again       {:8.0f} missions/s\n", missions / again.Seconds());
+  const Stopwatch tally;
+  Tally all(layout);
+  for (const std::string& store : dirs) all.Add(store);
+  fmt::print("tally of shards    {:8.1f} ms ({} done)\n", 1e3 * tally.Seconds(), all.Arms().front().done);
 }
 
 }  // namespace
@@ -150,5 +188,6 @@ int main(int argc, char** argv) {
       .name = "bench", .seed = 1, .stages = {{.name = "s", .missions = missions, .arms = {{"a", 0}}}}};
   ed3r::Write(dir.string(), layout, missions, timesteps);
   ed3r::Read(dir.string(), 1.0 * missions * timesteps);
+  if (argc > 3) ed3r::Merge(dir.string(), layout, missions, timesteps, std::atoi(argv[3]));
   std::filesystem::remove_all(dir);
 }

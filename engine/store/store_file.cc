@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "engine/core/check.h"
+#include "engine/store/file_system.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
+#include "engine/store/sqlite_errors.h"
 
 namespace ed3r {
 namespace {
@@ -18,6 +20,8 @@ namespace fs = std::filesystem;
 // Rows of 300-400 bytes: 16 KiB hold about forty, and the tree stays three levels deep.
 constexpr int kPageBytes = 16384;
 constexpr int kCacheKib = 64 * 1024;
+// A commit waits for readers where there is no WAL: a report may read for minutes.
+constexpr int kSharedBusyTimeout_ms = 600 * 1000;
 
 std::string FileIn(const std::string& dir) { return (fs::path(dir) / kResultsFile).string(); }
 
@@ -40,9 +44,10 @@ std::string Holder(const std::string& dir) {
   return "";
 }
 
-DirectoryLock Lock(const std::string& dir) {
-  if (auto lock = DirectoryLock::TryLock(dir)) return std::move(*lock);
-  throw UserError(fmt::format("{}: another ed3r is writing into this directory{}", dir, Holder(dir)));
+[[noreturn]] void FailOwned(const std::string& dir, const std::string& owner) {
+  throw UserError(
+      fmt::format("{}: another ed3r is writing into this directory ({}); if it is gone for good, remove {}",
+                  dir, owner, (fs::path(dir) / kOwnerFile).string()));
 }
 
 void CheckSameRun(Connection& database, const std::string& dir, const Recipe& recipe, const RunLayout& layout,
@@ -67,30 +72,76 @@ StoreFile::StoreFile(const std::string& dir, const Recipe& recipe, const RunLayo
                      OtherCode other_code)
     : dir_(dir) {
   created_dir_ = MakeDirectory(dir);
-  lock_ = std::make_unique<DirectoryLock>(Lock(dir));
+  Lock();
   created_ = !fs::exists(FileIn(dir));
-  database_ = std::make_unique<Connection>(FileIn(dir), Connection::Access::kCreate);
-  OpenOrCreate(recipe, layout, other_code);
+  try {
+    OpenOrCreate(recipe, layout, other_code);
+  } catch (const SharedMemoryError&) {
+    rollback_journal_ = true;
+    OpenOrCreate(recipe, layout, other_code);
+  }
 }
 
-void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code) {
-  const bool empty = CheckFile(*database_, FileUse::kWrite) == FileKind::kEmpty;
-  if (!empty) CheckSameRun(*database_, dir_, recipe, layout, other_code);
-  // Only now: a refused file stays as it was.
+void StoreFile::Lock() {
+  if (!IsSharedFileSystem(dir_)) {
+    DirectoryLock::Attempt attempt = DirectoryLock::TryLock(dir_);
+    if (attempt.lock) {
+      lock_ = std::make_unique<DirectoryLock>(std::move(*attempt.lock));
+      return;
+    }
+    if (attempt.supported)
+      throw UserError(fmt::format("{}: another ed3r is writing into this directory{}", dir_, Holder(dir_)));
+  }
+  std::string owner;
+  owner_ = OwnerFile::TryTake(dir_, owner);
+  if (!owner_) FailOwned(dir_, owner);
+  rollback_journal_ = true;
+}
+
+void StoreFile::CheckOwned() const {
+  if (owner_ && owner_->Lost())
+    throw StoreError(
+        fmt::format("{}: another ed3r has taken this directory over; what is stored is kept", dir_));
+}
+
+void StoreFile::Connect() {
+  database_.reset();  // the one before, of the other journal
+  database_ = std::make_unique<Connection>(FileIn(dir_), Connection::Access::kCreate);
+  if (!rollback_journal_) return;
+  database_->SetBusyTimeout(kSharedBusyTimeout_ms);
+  // A file that was left in WAL mode is opened without shared memory in this mode.
+  database_->Execute("PRAGMA locking_mode = EXCLUSIVE");
+}
+
+void StoreFile::SetJournal(bool empty) {
   if (empty) database_->Execute(fmt::format("PRAGMA page_size = {}", kPageBytes));
+  if (rollback_journal_) {
+    // The lock is given back with the next commit, so that readers get their turn between commits.
+    database_->Execute(
+        "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL; PRAGMA locking_mode = NORMAL");
+    return;
+  }
   database_->Execute("PRAGMA journal_mode = WAL");
   // A commit outlives the process at once, and a power cut costs the last commits but never the file.
   database_->Execute("PRAGMA synchronous = NORMAL");
+}
+
+void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code) {
+  Connect();
+  const bool empty = CheckFile(*database_, FileUse::kWrite) == FileKind::kEmpty;
+  if (!empty) CheckSameRun(*database_, dir_, recipe, layout, other_code);
+  SetJournal(empty);  // only now: a refused file stays as it was
   database_->Execute(fmt::format("PRAGMA cache_size = -{}", kCacheKib));
   database_->Execute("PRAGMA secure_delete = OFF");  // Debian's default wipes freed space
   Transaction transaction(*database_, Transaction::Kind::kWrite);
   empty ? CreateTables(*database_, recipe, layout) : AddCode(*database_, recipe.code);
   AddFailureKind(*database_);
+  CreateMissionsIndex(*database_);
   transaction.Commit();
 }
 
 StoreFile::~StoreFile() {
-  if (!database_) return;
+  if (!database_ || rollback_journal_) return;
   try {
     database_->SetBusyTimeout(0);  // a reader that is still looking is not waited for
     database_->Execute("PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode = DELETE");
@@ -98,11 +149,19 @@ StoreFile::~StoreFile() {
   }
 }
 
+void FinishCommit(const std::string& dir) {
+  std::string owner;
+  const std::unique_ptr<OwnerFile> alone = OwnerFile::TryTake(dir, owner);
+  if (!alone) FailOwned(dir, owner);
+  Connection database(FileIn(dir), Connection::Access::kReadWrite);
+  database.Int("SELECT count(*) FROM sqlite_schema");  // any read rolls back
+}
+
 void StoreFile::Discard() {
   database_.reset();
   if (!created_) return;
   std::error_code ignored;
-  for (const char* suffix : {"", "-wal", "-shm"}) fs::remove(FileIn(dir_) + suffix, ignored);
+  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(FileIn(dir_) + suffix, ignored);
   if (created_dir_) fs::remove(dir_, ignored);
 }
 

@@ -6,13 +6,17 @@
 
 #include "engine/store/directory_lock.h"
 #include "engine/store/layout.h"
+#include "engine/store/owner_file.h"
 #include "engine/store/recipe.h"
 #include "engine/store/sqlite.h"
 
 namespace ed3r {
 
-// While it is open, the file is in WAL mode: readers of other processes see every commit and never wait.
-// Closing brings it back to one plain file, unless a reader is still looking (then the next session does).
+// While it is open on a disk of this machine, the file is in WAL mode: readers of other processes see every commit and never
+// wait. Closing brings it back to one plain file, unless a reader is still looking (then the next session does).
+// Where several machines may see the directory, or the file system has no locks or no shared memory for it, the file is
+// written with a rollback journal instead (readers wait for a commit, and commits for readers), and an owner file keeps other
+// writers away (file_system.h, owner_file.h).
 class StoreFile {
  public:
   // Makes DIR and the file when missing. UserError, and nothing changed, when the file holds the results of
@@ -27,18 +31,30 @@ class StoreFile {
   Connection& database() { return *database_; }
   bool created() const { return created_; }
 
+  // StoreError once another writer has taken the directory over, which it does only when this one seemed dead.
+  void CheckOwned() const;
+
   // Takes away what this object created: the file, and the directory when it is empty then. For a merge into
   // a new directory that is refused.
   void Discard();
 
  private:
+  void Lock();
+  void Connect();
+  void SetJournal(bool empty);
   void OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code);
 
   std::string dir_;
   bool created_dir_ = false;
   bool created_ = false;
-  std::unique_ptr<DirectoryLock> lock_;  // outlives the connection
+  bool rollback_journal_ = false;
+  // One of the two is held; both outlive the connection.
+  std::unique_ptr<DirectoryLock> lock_;
+  std::unique_ptr<OwnerFile> owner_;
   std::unique_ptr<Connection> database_;
 };
+
+// Rolls back what a killed writer left half committed in DIR, if no writer is alive. UserError otherwise.
+void FinishCommit(const std::string& dir);
 
 }  // namespace ed3r

@@ -40,6 +40,19 @@ TEST(ShardTest, EveryMissionIsInExactlyOneShard) {
   }
 }
 
+// Sites recur at a fixed distance, and where a site is far away missions are long.
+TEST(ShardTest, EachGetsEverySiteWhateverTheirNumber) {
+  constexpr std::int64_t kSites = 28, kMissions = 28 * 28 * 64;
+  for (const std::int64_t count : {2, 7, 14, 16, 28, 56}) {
+    std::vector<std::vector<int>> missions(static_cast<std::size_t>(count), std::vector<int>(kSites));
+    for (std::int64_t i = 0; i < kMissions; ++i)
+      ++missions[static_cast<std::size_t>(ShardOf(i, count))][static_cast<std::size_t>(i % kSites)];
+    const double expected = 1.0 * kMissions / static_cast<double>(count * kSites);
+    for (const std::vector<int>& by_site : missions)
+      for (const int of_site : by_site) EXPECT_NEAR(of_site, expected, expected / 4) << count << " shards";
+  }
+}
+
 TEST(TodoTest, LeavesOutWhatIsStored) {
   const RunLayout layout = TestLayout();
   const std::vector<RunId> stored = {{0, 0, 0}, {0, 0, 39}, {2, 0, 1}, {2, 1, 2}};

@@ -1,0 +1,215 @@
+#include "engine/app/command_slurm.h"
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "engine/app/expected_time.h"
+#include "engine/app/sweep_arguments.h"
+#include "engine/app/words.h"
+#include "engine/core/check.h"
+#include "engine/core/file.h"
+#include "engine/schedule/batch/owed.h"
+#include "engine/schedule/batch/shell.h"
+#include "engine/schedule/batch/slurm_scripts.h"
+#include "engine/schedule/training_stage.h"
+#include "studies/report/load.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kMaxShards = 100'000;
+
+struct Options {
+  SweepArguments sweep;
+  std::string out;
+  std::string cache = "results/cache";
+  std::string time, partition, account, scratch;
+  std::int64_t shards = 16, cpus = 1, array_limit = 1000;
+  bool submit = false, missing = false, force = false;
+};
+
+std::string Absolute(const std::string& path) { return fs::absolute(path).lexically_normal().string(); }
+
+void CheckDirective(const char* option, const std::string& value) {
+  if (!value.empty() && !IsDirectiveWord(value))
+    throw UserError(
+        fmt::format("{}: '{}' is not allowed; allowed: letters, digits and ._:,=@%+/[]-", option, value));
+}
+
+std::vector<std::string> SweepWords(const SweepArguments& sweep) {
+  std::vector<std::string> words = {Absolute(sweep.file)};
+  for (const std::string& set : sweep.set) words.insert(words.end(), {"--set", set});
+  if (!sweep.seed.empty()) words.insert(words.end(), {"--seed", sweep.seed});
+  for (const std::string& missions : sweep.missions) words.insert(words.end(), {"--missions", missions});
+  return words;
+}
+
+SlurmOptions ScriptOptions(const Options& options, const std::string& run_dir) {
+  SlurmOptions slurm;
+  slurm.program = fs::read_symlink("/proc/self/exe").string();
+  slurm.sweep = SweepWords(options.sweep);
+  slurm.working_dir = fs::current_path().string();
+  slurm.run_dir = Absolute(run_dir);
+  slurm.cache_dir = Absolute(options.cache);
+  slurm.partition = options.partition;
+  slurm.account = options.account;
+  slurm.time = options.time;
+  slurm.scratch = options.scratch;
+  slurm.shards = options.shards;
+  slurm.cpus = options.cpus;
+  slurm.array_limit = options.array_limit;
+  return slurm;
+}
+
+std::vector<BatchStep> Steps(const SweepPlan& plan, std::int64_t shards) {
+  std::vector<double> expected_core_s;
+  for (const Stage& stage : plan.stages) expected_core_s.push_back(ExpectedCoreS(stage));
+  return StepsOf(plan, shards, NeedsNetworks(plan) ? CountNetworks(plan) : 0, expected_core_s);
+}
+
+// Scripts are there to be edited: what somebody has changed is not written over.
+void Write(const std::vector<BatchFile>& files, const fs::path& folder, bool force) {
+  for (const BatchFile& file : files) {
+    const fs::path path = folder / file.name;
+    if (force || !fs::exists(path) || ReadFile(path.string()) == file.content) continue;
+    throw UserError(fmt::format(
+        "{}: differs from what these options give; submit it as it is with {}, or give --force to "
+        "write over it",
+        path.string(), (folder / "submit.sh").string()));
+  }
+  MakeFolder(folder / "logs");
+  for (const BatchFile& file : files) {
+    WriteFile(folder / file.name, file.content);
+    if (file.executable)
+      fs::permissions(folder / file.name,
+                      fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
+                      fs::perm_options::add);
+  }
+}
+
+// How many shards the scripts in the folder divide a stage into.
+std::int64_t ShardsOfScripts(const fs::path& folder) {
+  const std::string common = (folder / "common.sh").string();
+  if (!fs::exists(common))
+    throw UserError(
+        fmt::format("{}: no batch scripts in it; 'ed3r slurm SWEEP' writes them", folder.string()));
+  const std::string text = ReadFile(common);
+  const std::size_t at = text.find(kShardsLine);
+  std::int64_t shards = 0;
+  if (at != std::string::npos) {
+    const char* const begin = text.data() + at + std::strlen(kShardsLine);
+    std::from_chars(begin, text.data() + text.size(), shards);
+  }
+  if (shards < 1 || shards > kMaxShards)
+    throw UserError(fmt::format("{}: no line '{}N' with N in 1 .. {}", common, kShardsLine + 1, kMaxShards));
+  return shards;
+}
+
+int Submit(const fs::path& folder, const std::vector<std::string>& arguments) {
+  std::vector<std::string> command = {(folder / "submit.sh").string()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  std::vector<char*> words;
+  for (std::string& word : command) words.push_back(word.data());
+  words.push_back(nullptr);
+  std::fflush(stdout);  // before what the script says
+  pid_t child = 0;
+  if (const int error = posix_spawn(&child, words.front(), nullptr, nullptr, words.data(), environ);
+      error != 0)
+    throw UserError(fmt::format("{}: cannot be run: {}", command.front(), std::strerror(error)));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) throw InternalError(fmt::format("{}: {}", command.front(), std::strerror(errno)));
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return kDone;
+  fmt::print(stderr, "{}: ended with {}; what it has submitted stays\n", command.front(),
+             WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
+  return kFailedInside;
+}
+
+int TellMissing(const SweepPlan& plan, const Options& options, const fs::path& folder,
+                const std::string& run_dir) {
+  const std::vector<BatchStep> steps = Steps(plan, ShardsOfScripts(folder));
+  const Owed owed = WhatIsOwed(plan, steps, run_dir, options.cache, HalfWidth);
+  if (owed.step == 0) {
+    fmt::print("{}: nothing is owed\n", run_dir);
+    return kDone;
+  }
+  const BatchStep& step = steps[static_cast<std::size_t>(owed.step) - 1];
+  fmt::print("{}: step {} on", run_dir, step.name);
+  if (!owed.tasks.empty())
+    fmt::print(", {} of its {} tasks: {}", owed.tasks.size(), step.tasks, TaskList(owed.tasks));
+  if (owed.missions > 0) fmt::print(" ({} owed)", Counted(owed.missions, "mission"));
+  std::vector<std::string> arguments = {fmt::format("{}", owed.step)};
+  for (const std::string& array : ArraysOf(owed.tasks, options.array_limit)) arguments.push_back(array);
+  fmt::print("\n{} {}\n", ShellWord((folder / "submit.sh").string()), ShellWords(arguments));
+  return options.submit ? Submit(folder, arguments) : kDone;
+}
+
+int Run(const Options& options) {
+  CheckDirective("--time", options.time);
+  CheckDirective("--partition", options.partition);
+  CheckDirective("--account", options.account);
+  if (options.scratch.find_first_of("\"`\\\n") != std::string::npos)
+    throw UserError(fmt::format(
+        "--scratch: '{}' is not allowed; allowed: a path, or a variable such as $TMPDIR", options.scratch));
+  const SweepPlan plan = options.sweep.Load();
+  CheckTraining(plan);
+  const std::string run_dir = options.out.empty() ? DefaultRunDir(plan) : options.out;
+  const fs::path folder = fs::path(run_dir) / "slurm";
+  if (options.missing) return TellMissing(plan, options, folder, run_dir);
+  const std::vector<BatchStep> steps = Steps(plan, options.shards);
+  Write(SlurmScripts(plan.name, steps, ScriptOptions(options, run_dir)), folder, options.force);
+  fmt::print("{}: {}, from {} to {}\n", folder.string(),
+             Counted(static_cast<std::int64_t>(steps.size()), "step"), steps.front().name, steps.back().name);
+  if (options.submit) return Submit(folder, {});
+  fmt::print("submit them with {}\n", ShellWord((folder / "submit.sh").string()));
+  return kDone;
+}
+
+}  // namespace
+
+Command AddSlurm(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* parser = program.add_subcommand(
+      "slurm", "Writes a sweep as batch scripts for Slurm, to be read, edited and submitted: RUN/slurm");
+  options->sweep.AddTo(*parser);
+  parser
+      ->add_option("--out", options->out,
+                   "Run directory, on a disk that all nodes share; default results/runs/<sweep name>")
+      ->check(NotEmpty());
+  parser
+      ->add_option("--cache", options->cache,
+                   "Where trained networks are kept, likewise; default results/cache")
+      ->check(NotEmpty());
+  parser->add_option("--shards", options->shards, "Tasks of a stage's flights; default 16")
+      ->check(CLI::Range(std::int64_t{1}, kMaxShards));
+  parser->add_option("--cpus-per-task", options->cpus, "Threads of a task; default 1")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{4096}));
+  parser->add_option("--time", options->time,
+                     "Time limit of a task, as sbatch takes it; default: the site's");
+  parser->add_option("--partition", options->partition, "Partition; default: the site's");
+  parser->add_option("--account", options->account, "Account; default: the site's");
+  parser
+      ->add_option("--array-limit", options->array_limit,
+                   "Tasks of one job array at most (the site's MaxArraySize less one); default 1000")
+      ->check(CLI::Range(std::int64_t{1}, kMaxShards));
+  parser->add_option("--scratch", options->scratch,
+                     "Fly on a disk of the node's own, such as '$TMPDIR', and move the store at the end");
+  parser->add_flag("--submit", options->submit, "Submit them");
+  parser->add_flag(
+      "--missing", options->missing,
+      "Say which tasks are still owed by what is stored; with --submit, submit just those and what follows");
+  parser->add_flag("--force", options->force, "Write over scripts that have been edited");
+  return {parser, [options] { return Run(*options); }};
+}
+
+}  // namespace ed3r

@@ -1,0 +1,10 @@
+// The command that writes batch scripts; see commands.h.
+#pragma once
+
+#include "engine/app/commands.h"
+
+namespace ed3r {
+
+Command AddSlurm(CLI::App& program);
+
+}  // namespace ed3r

@@ -1,0 +1,61 @@
+#include "engine/app/finished_run.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <exception>
+
+#include "engine/app/words.h"
+#include "engine/core/version.h"
+#include "engine/schedule/input_files.h"
+#include "engine/schedule/sweep_runner.h"
+#include "engine/store/finished.h"
+#include "engine/store/reader.h"
+
+namespace ed3r {
+namespace {
+
+// This very build: what it prints may differ from what another one does.
+std::string ThisProgram() {
+  struct stat found = {};
+  if (stat("/proc/self/exe", &found) != 0) return "";
+  return fmt::format("{} {} {}.{:09}", ThisCode().source_hash, found.st_size, found.st_mtim.tv_sec,
+                     found.st_mtim.tv_nsec);
+}
+
+// By what the files contain: worlds and detectors need not be loaded for that.
+bool SameRecipe(const SweepPlan& plan, const std::string& dir) {
+  ResultReader reader(dir);
+  const Recipe& recipe = reader.StoredRecipe();
+  if (recipe.plan_text != plan.CanonicalText() || CodeDifference(recipe.code, CodeOf(plan))) return false;
+  const InputFiles here = ReadInputFiles(plan);
+  return recipe.places == here.places && reader.Files() == here.files;
+}
+
+}  // namespace
+
+bool TellFinishedRun(const SweepPlan& plan, const std::string& dir, bool quiet) {
+  try {
+    const std::string program = ThisProgram();
+    const auto finished = program.empty() ? std::nullopt : RecallFinished(dir, program);
+    if (!finished || (!quiet && finished->table.empty()) || !SameRecipe(plan, dir)) return false;
+    if (!quiet)
+      fmt::print("{}\n{}: {} stored ({} before)\n{}", finished->table, dir,
+                 Counted(finished->missions, "mission"), finished->missions, finished->networks);
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+void RememberFinishedRun(const std::string& dir, std::int64_t missions, const std::string& table,
+                         const std::string& networks) {
+  const std::string program = ThisProgram();
+  if (program.empty()) return;
+  try {
+    RememberFinished(dir, {program, missions, table, networks});
+  } catch (const std::exception&) {  // it saves time, and the results are stored
+  }
+}
+
+}  // namespace ed3r

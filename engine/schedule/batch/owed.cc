@@ -1,0 +1,123 @@
+#include "engine/schedule/batch/owed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "engine/core/check.h"
+#include "engine/schedule/todo.h"
+#include "engine/schedule/training_stage.h"
+#include "engine/store/reader.h"
+#include "engine/store/schema.h"
+#include "engine/store/shards.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool HoldsResults(const std::string& dir) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(fs::path(dir) / kResultsFile, error);
+  return !error && bytes > 0;
+}
+
+class Books {
+ public:
+  Books(const SweepPlan& plan, const std::string& run_dir, const std::string& cache_dir,
+        const HalfWidthFn& half_width)
+      : plan_(plan),
+        layout_(LayoutOf(plan)),
+        run_dir_(run_dir),
+        cache_dir_(cache_dir),
+        half_width_(half_width) {
+    if (!HoldsResults(run_dir)) return;
+    ResultReader reader(run_dir);
+    if (reader.StoredRecipe().plan_text != plan.CanonicalText())
+      throw UserError(fmt::format("{}: holds results of another plan; give another --out", run_dir));
+    merged_ = reader.Stored();
+    has_networks_ = !reader.Networks().uses.empty();
+  }
+
+  // The flights of a stage: their tasks, or the merge where all is flown. False when it is finished.
+  bool Flights(const BatchStep& step, int number, Owed& owed) const {
+    const StageProgress progress = ProgressOf(plan_, step.stage, merged_, run_dir_, half_width_);
+    if (progress.open.empty()) return false;
+    const std::vector<RunId> stored = WithShards(step.stage);
+    std::set<std::int64_t> tasks;
+    const Shard every{};
+    for (const RunId& id : Todo(layout_, StageNumber(step.stage), every, stored)) {
+      if (!progress.Asks(id)) continue;
+      tasks.insert(TaskOf(ShardOf(layout_.LinearIndex(id), step.tasks), step.tasks));
+      ++owed.missions;
+    }
+    owed.tasks.assign(tasks.begin(), tasks.end());
+    owed.step = tasks.empty() ? number + 1 : number;
+    return true;
+  }
+
+  bool Trainings(const BatchStep& step, int number, Owed& owed) const {
+    if (has_networks_) return false;
+    const std::vector<bool> cached = NetworksInCache(plan_, {run_dir_, cache_dir_});
+    for (std::size_t i = 0; i < cached.size(); ++i)
+      if (!cached[i]) owed.tasks.push_back(TaskOf(static_cast<std::int64_t>(i), step.tasks));
+    std::sort(owed.tasks.begin(), owed.tasks.end());
+    owed.step = owed.tasks.empty() ? number + 1 : number;
+    return true;
+  }
+
+  bool Report(int number, Owed& owed) const {
+    std::error_code error;
+    const auto made = fs::last_write_time(fs::path(run_dir_) / "report" / "index.html", error);
+    if (!error && made >= fs::last_write_time(fs::path(run_dir_) / kResultsFile)) return false;
+    owed.step = number;
+    return true;
+  }
+
+ private:
+  // Tasks are counted from 1: the last one flies shard 0.
+  static std::int64_t TaskOf(std::int64_t shard, std::int64_t tasks) { return shard == 0 ? tasks : shard; }
+
+  int StageNumber(const std::string& name) const {
+    const auto found = std::find_if(plan_.stages.begin(), plan_.stages.end(),
+                                    [&](const Stage& stage) { return stage.name == name; });
+    return static_cast<int>(found - plan_.stages.begin());
+  }
+
+  std::vector<RunId> WithShards(const std::string& stage) const {
+    std::vector<RunId> stored = merged_;
+    for (const std::string& dir : ShardDirs(run_dir_, stage)) {
+      const std::vector<RunId> of_task = ResultReader(dir).Stored();
+      stored.insert(stored.end(), of_task.begin(), of_task.end());
+    }
+    std::sort(stored.begin(), stored.end());
+    return stored;
+  }
+
+  const SweepPlan& plan_;
+  const RunLayout layout_;
+  const std::string &run_dir_, &cache_dir_;
+  const HalfWidthFn& half_width_;
+  std::vector<RunId> merged_;
+  bool has_networks_ = false;
+};
+
+}  // namespace
+
+Owed WhatIsOwed(const SweepPlan& plan, const std::vector<BatchStep>& steps, const std::string& run_dir,
+                const std::string& cache_dir, const HalfWidthFn& half_width) {
+  const Books books(plan, run_dir, cache_dir, half_width);
+  Owed owed;
+  for (std::size_t i = 0; i < steps.size() && owed.step == 0; ++i) {
+    const int number = static_cast<int>(i) + 1;
+    const BatchStep& step = steps[i];
+    if (step.kind == BatchStep::Kind::kFly) books.Flights(step, number, owed);
+    if (step.kind == BatchStep::Kind::kTrain) books.Trainings(step, number, owed);
+    if (step.kind == BatchStep::Kind::kReport) books.Report(number, owed);
+  }
+  return owed;
+}
+
+}  // namespace ed3r

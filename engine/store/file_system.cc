@@ -1,0 +1,54 @@
+#include "engine/store/file_system.h"
+
+#include <fmt/format.h>
+#include <sys/vfs.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <iterator>
+#include <string_view>
+
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+// Magic numbers of statfs(2) and of the clients' own headers.
+constexpr std::uint32_t kShared[] = {
+    0x6969,      // NFS
+    0x0bd00bd0,  // Lustre
+    0x47504653,  // GPFS, Spectrum Scale
+    0x19830326,  // BeeGFS
+    0x00c36400,  // Ceph
+    0xff534d42,  // CIFS
+    0xfe534d42,  // SMB2
+    0x517b,      // SMB
+    0x5346414f,  // AFS
+    0x73757245,  // Coda
+    0xaad7aaea,  // PanFS
+    0x7461636f,  // OCFS2
+    0x01161970,  // GFS2
+    0x20030528,  // OrangeFS
+    0x01021997,  // 9P
+    0x65735546,  // FUSE: GlusterFS, WekaFS, s3fs; some are local, and slower so
+};
+
+}  // namespace
+
+bool IsSharedFileSystem(const std::string& dir) {
+  if (const char* asked = std::getenv("ED3R_STORE"); asked != nullptr && *asked != '\0') {
+    const std::string_view value = asked;
+    if (value != "local" && value != "shared")
+      throw UserError(fmt::format("ED3R_STORE: '{}' is not allowed; allowed: local | shared", value));
+    return value == "shared";
+  }
+  struct statfs found = {};
+  if (statfs(dir.c_str(), &found) != 0) throw UserError(fmt::format("{}: {}", dir, std::strerror(errno)));
+  const auto type = static_cast<std::uint32_t>(found.f_type);
+  return std::find(std::begin(kShared), std::end(kShared), type) != std::end(kShared);
+}
+
+}  // namespace ed3r

@@ -1,0 +1,93 @@
+#include "engine/store/finished.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <ctime>
+#include <filesystem>
+
+#include "engine/core/check.h"
+#include "engine/store/directory_lock.h"
+#include "engine/store/file_system.h"
+#include "engine/store/schema.h"
+#include "engine/store/sqlite.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kNsPerS = 1'000'000'000;
+
+std::string FileIn(const std::string& dir) { return (fs::path(dir) / kResultsFile).string(); }
+
+// Of the file's header: raised by every transaction that writes outside of WAL mode. -1 where it cannot be read.
+std::int64_t ChangeCounter(const std::string& file) {
+  std::array<unsigned char, 4> bytes = {};
+  constexpr off_t kOffset = 24;
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return -1;
+  const ssize_t got = pread(descriptor, bytes.data(), bytes.size(), kOffset);
+  close(descriptor);
+  if (got != static_cast<ssize_t>(bytes.size())) return -1;
+  std::int64_t counter = 0;
+  for (const unsigned char byte : bytes) counter = counter << 8 | byte;
+  return counter;
+}
+
+std::int64_t WrittenNs(const std::string& file) {
+  struct stat found = {};
+  return stat(file.c_str(), &found) == 0 ? found.st_mtim.tv_sec * kNsPerS + found.st_mtim.tv_nsec : -1;
+}
+
+bool IsBeingWritten(const std::string& file) {
+  return fs::exists(file + "-wal") || fs::exists(file + "-journal");
+}
+
+void Write(const std::string& file, const FinishedRun& run) {
+  const std::int64_t counter = ChangeCounter(file) + 1;
+  timespec now = {};
+  clock_gettime(CLOCK_REALTIME, &now);
+  {
+    Connection database(file, Connection::Access::kReadWrite);
+    if (database.Text("PRAGMA journal_mode") == "wal") return;  // a reader is still looking
+    Transaction transaction(database, Transaction::Kind::kWrite);
+    database.Execute(
+        "DROP TABLE IF EXISTS finished; CREATE TABLE finished (made_by TEXT NOT NULL, change_counter INTEGER "
+        "NOT NULL, "
+        "written_ns INTEGER NOT NULL, missions INTEGER NOT NULL, results TEXT NOT NULL, networks TEXT NOT "
+        "NULL) STRICT");
+    Statement put(database, "INSERT INTO finished VALUES (?, ?, ?, ?, ?, ?)");
+    put.Run(run.made_by, counter, now.tv_sec * kNsPerS + now.tv_nsec, run.missions, run.table, run.networks);
+    transaction.Commit();
+  }
+  const timespec times[2] = {now, now};
+  utimensat(AT_FDCWD, file.c_str(), times, 0);
+}
+
+}  // namespace
+
+void RememberFinished(const std::string& dir, const FinishedRun& run) {
+  const std::string file = FileIn(dir);
+  if (IsSharedFileSystem(dir)) return;
+  const DirectoryLock::Attempt alone = DirectoryLock::TryLock(dir);
+  if (alone.lock && !IsBeingWritten(file)) Write(file, run);
+}
+
+std::optional<FinishedRun> RecallFinished(const std::string& dir, const std::string& made_by) {
+  const std::string file = FileIn(dir);
+  if (!fs::exists(file) || IsBeingWritten(file)) return std::nullopt;
+  Connection database(file, Connection::Access::kReadOnly);
+  if (database.Int("SELECT count(*) FROM sqlite_schema WHERE name = 'finished'") == 0) return std::nullopt;
+  Statement select(
+      database,
+      "SELECT change_counter, written_ns, missions, results, networks FROM finished WHERE made_by = ?");
+  select.Bind(0, made_by);
+  if (!select.Step() || select.Int(0) != ChangeCounter(file) || select.Int(1) != WrittenNs(file))
+    return std::nullopt;
+  return FinishedRun{made_by, select.Int(2), select.Text(3), select.Text(4)};
+}
+
+}  // namespace ed3r

@@ -1,0 +1,27 @@
+// A run that was found whole and complete, remembered in its own file, so that the same command again need not read all of it.
+//
+// It is believed only by the program that wrote it and while the file is untouched: SQLite's change counter and the time of
+// the last write must be what they were. Damage that leaves both alone is found by 'ed3r verify' and by whatever reads the
+// damaged mission.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace ed3r {
+
+struct FinishedRun {
+  std::string made_by;  // names the program
+  std::int64_t missions = 0;
+  std::string table;     // what the command printed: the results; "" where it was quiet
+  std::string networks;  // and the networks
+};
+
+// Does nothing where another process is at the file, or several machines may be.
+void RememberFinished(const std::string& dir, const FinishedRun& run);
+
+// Nothing where the file was touched, made by another program, or never remembered.
+std::optional<FinishedRun> RecallFinished(const std::string& dir, const std::string& made_by);
+
+}  // namespace ed3r

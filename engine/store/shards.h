@@ -1,0 +1,14 @@
+// Where the tasks of a batch system leave their stores: RUN/shards/STAGE/TASK, one folder each.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ed3r {
+
+// Folders below RUN/shards with a results file that is not empty, in order of their names. None where there is no such
+// folder.
+std::vector<std::string> ShardDirs(const std::string& run_dir);
+std::vector<std::string> ShardDirs(const std::string& run_dir, const std::string& stage);
+
+}  // namespace ed3r

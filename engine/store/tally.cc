@@ -1,0 +1,94 @@
+#include "engine/store/tally.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "engine/core/check.h"
+#include "engine/store/records.h"
+#include "engine/store/schema.h"
+#include "engine/store/sqlite.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string FileIn(const std::string& dir) { return (fs::path(dir) / kResultsFile).string(); }
+
+// Seconds since the file or its write-ahead log was written.
+double QuietFor_s(const std::string& dir) {
+  auto written = fs::file_time_type::min();
+  for (const char* suffix : {"", "-wal"}) {
+    std::error_code error;
+    const auto time = fs::last_write_time(FileIn(dir) + suffix, error);
+    if (!error) written = std::max(written, time);
+  }
+  return std::chrono::duration<double>(fs::file_time_type::clock::now() - written).count();
+}
+
+}  // namespace
+
+Tally::Tally(const RunLayout& layout) : layout_(layout) {
+  for (const RunLayout::Stage& stage : layout.stages)
+    for (std::size_t arm = 0; arm < stage.arms.size(); ++arm)
+      done_.emplace_back(static_cast<std::size_t>(stage.missions));
+  failed_ = done_;
+}
+
+void Tally::Add(const std::string& dir) {
+  if (!ResultReader(dir).Layout().SameMissions(layout_))
+    throw UserError(fmt::format("{}: holds results of other stages, arms or seed", dir));
+  Connection database(FileIn(dir), Connection::Access::kReadOnly);
+  const Transaction moment(database, Transaction::Kind::kRead);
+  Mark(database, "missions", done_);
+  Mark(database, "failures", failed_);
+}
+
+void Tally::Mark(Connection& database, const char* table, std::vector<std::vector<bool>>& marks) const {
+  // Along the small index where the file has it (schema.h).
+  const bool indexed =
+      std::string_view(table) == "missions" &&
+      database.Int(fmt::format("SELECT count(*) FROM sqlite_schema WHERE name = '{}'", kMissionsIndex)) > 0;
+  Statement select(database, fmt::format("SELECT run, mission FROM {}{}", table,
+                                         indexed ? fmt::format(" INDEXED BY {}", kMissionsIndex) : ""));
+  while (select.Step()) {
+    const std::int64_t run = select.Int(0), mission = select.Int(1);
+    if (run < 0 || run >= std::ssize(marks) || mission < 0 ||
+        mission >= std::ssize(marks[static_cast<std::size_t>(run)]))
+      throw UserError(DamageText(database.file(), {run, mission, layout_.DescribeKeys(run, mission),
+                                                   "the plan has no such mission"}));
+    marks[static_cast<std::size_t>(run)][static_cast<std::size_t>(mission)] = true;
+  }
+}
+
+std::vector<ArmStatus> Tally::Arms() const {
+  std::vector<ArmStatus> arms;
+  for (const RunLayout::Stage& stage : layout_.stages)
+    for (const RunLayout::Arm& arm : stage.arms) {
+      const std::vector<bool>&done = done_[arms.size()], &failed = failed_[arms.size()];
+      ArmStatus& status = arms.emplace_back();
+      status.stage = stage.name;
+      status.arm = arm.name;
+      status.planned = stage.missions;
+      status.done = std::count(done.begin(), done.end(), true);
+      for (std::size_t i = 0; i < done.size(); ++i) status.failed += failed[i] && !done[i] ? 1 : 0;
+      status.missing = status.planned - status.done - status.failed;
+    }
+  return arms;
+}
+
+double MissionsPerSecond(const std::string& dir, double still_s) {
+  if (QuietFor_s(dir) > still_s) return 0.0;
+  Connection database(FileIn(dir), Connection::Access::kReadOnly);
+  Statement last(database,
+                 "SELECT (SELECT count(*) FROM timings WHERE timings.session = sessions.session), "
+                 "unixepoch('now') - unixepoch(begun_utc) FROM sessions WHERE ended_utc IS NULL "
+                 "ORDER BY begun_utc DESC LIMIT 1");
+  if (!last.Step() || last.Int(1) <= 0) return 0.0;
+  return static_cast<double>(last.Int(0)) / static_cast<double>(last.Int(1));
+}
+
+}  // namespace ed3r

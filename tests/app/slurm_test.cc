@@ -1,0 +1,137 @@
+// A sweep in the pieces that a batch system flies, without one: the commands of the batch scripts, by hand.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/command.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kWorld = "mission.world: " ED3R_SOURCE_DIR "/sweeps/worlds/ridges.yaml";
+
+const std::string kStages =
+    "set: {training.learning_rate: 1e-4, training.epochs: 2, robot.battery_mah: 400, " + kWorld + R"(}
+name: pieces
+seed: 3
+stages:
+  - {name: warmup, missions: 12, set: {strategy: random}}
+  - {name: training, kind: train, after: warmup}
+  - {name: online, after: training, missions: 5, set: {strategy: ed3r}}
+)";
+
+class PiecesTest : public testing::Test {
+ protected:
+  std::string Write(const std::string& text) {
+    const std::string file = (scratch_ / "sweep.yaml").string();
+    std::ofstream(file) << text << "\n";
+    return file;
+  }
+  std::string Run() const { return (scratch_ / "run").string(); }
+  std::string Cache() const { return (scratch_ / "cache").string(); }
+
+  CommandResult Piece(const std::string& sweep, const std::string& stage, const std::string& shard) {
+    return Ed3r(fmt::format("run {} --stage {} --shard {} --from {} --out {}/shards/{}/{} --cache {} --quiet",
+                            sweep, stage, shard, Run(), Run(), stage, shard.substr(0, 1), Cache()));
+  }
+  void ExpectDone(const CommandResult& result) { EXPECT_EQ(result.status, 0) << result.err; }
+  void Merge(const std::string& stage) {
+    ExpectDone(Ed3r(fmt::format("merge {} {}/shards/{}/*/", Run(), Run(), stage)));
+  }
+  std::string Missing(const std::string& sweep) {
+    const CommandResult result =
+        Ed3r(fmt::format("slurm {} --out {} --cache {} --missing", sweep, Run(), Cache()));
+    ExpectDone(result);
+    return result.out;
+  }
+  bool Says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+  ScratchFolder scratch_;
+};
+
+TEST_F(PiecesTest, GiveTheDigestOfOneMachine) {
+  const std::string sweep = Write(kStages);
+  const std::string whole = (scratch_ / "whole").string();
+  ExpectDone(
+      Ed3r(fmt::format("run {} --quiet --out {} --cache {}", sweep, whole, (scratch_ / "other").string())));
+  ExpectDone(Ed3r(fmt::format("slurm {} --shards 2 --out {} --cache {}", sweep, Run(), Cache())));
+
+  EXPECT_TRUE(Says(Missing(sweep), "step 1-warmup on, 2 of its 2 tasks: 1-2 (12 missions owed)"))
+      << Missing(sweep);
+  ExpectDone(Piece(sweep, "warmup", "2/2"));
+  EXPECT_TRUE(Says(Missing(sweep), "1 of its 2 tasks: 1 (6 missions owed)")) << Missing(sweep);
+  const CommandResult status = Ed3r("status --json " + Run());
+  EXPECT_EQ(nlohmann::json::parse(status.out)["arms"][0]["done"], 6) << "shards count before they are merged";
+
+  const CommandResult early = Piece(sweep, "training", "1/2");
+  EXPECT_EQ(early.status, 2);
+  ExpectDone(Piece(sweep, "warmup", "1/2"));
+  EXPECT_TRUE(Says(Missing(sweep), "step 2-warmup-merge on\n")) << Missing(sweep);
+  Merge("warmup");
+  EXPECT_EQ(Ed3r("status --stage warmup " + Run()).status, 0);
+  EXPECT_EQ(Ed3r("status --stage online " + Run()).status, 3);
+
+  EXPECT_TRUE(Says(Missing(sweep), "step 3-training on, 2 of its 2 tasks: 1-2")) << Missing(sweep);
+  EXPECT_EQ(Piece(sweep, "online", "1/2").status, 2) << "no networks yet";
+  ExpectDone(Piece(sweep, "training", "1/2"));
+  EXPECT_TRUE(Says(Missing(sweep), "step 3-training on, 1 of its 2 tasks: 2")) << Missing(sweep);
+  ExpectDone(Piece(sweep, "training", "2/2"));
+  EXPECT_TRUE(Says(Missing(sweep), "step 4-training-collect on")) << Missing(sweep);
+  ExpectDone(Ed3r(fmt::format("run {} --stage training --out {} --cache {} --quiet", sweep, Run(), Cache())));
+
+  ExpectDone(Piece(sweep, "online", "1/2"));
+  ExpectDone(Piece(sweep, "online", "2/2"));
+  Merge("online");
+  EXPECT_EQ(Ed3r("digest " + Run()).out, Ed3r("digest " + whole).out);
+  EXPECT_TRUE(Says(Missing(sweep), "step 7-report on")) << Missing(sweep);
+  ExpectDone(Ed3r("report --no-figures " + Run()));
+  EXPECT_TRUE(Says(Missing(sweep), "nothing is owed")) << Missing(sweep);
+  Merge("online");
+  EXPECT_EQ(Ed3r("digest " + Run()).out, Ed3r("digest " + whole).out) << "merging again changes nothing";
+}
+
+TEST_F(PiecesTest, APrecisionGoesInRounds) {
+  const std::string sweep = Write(
+      "name: rounds\nmissions: 60\nprecision: {metric: total_energy_kj, half_width: 2, every: 20}\n"
+      "set: {strategy: rbs, " +
+      kWorld + "}\nsweep: {robot.battery_mah: [400, 3500]}");
+  const std::string whole = (scratch_ / "whole").string();
+  ExpectDone(Ed3r(fmt::format("run {} --quiet --out {}", sweep, whole)));
+  int rounds = 0;
+  for (int status = 75; status == 75 && rounds < 4; ++rounds) {
+    for (const char* shard : {"1/3", "2/3", "3/3"}) ExpectDone(Piece(sweep, "online", shard));
+    Merge("online");
+    status = Ed3r("status --stage online " + Run()).status;
+    EXPECT_TRUE(status == 75 || status == 0) << status;
+  }
+  EXPECT_EQ(rounds, 3) << "the large battery is flown out";
+  EXPECT_EQ(Ed3r("digest " + Run()).out, Ed3r("digest " + whole).out);
+}
+
+TEST_F(PiecesTest, WhatCannotBeIsRefused) {
+  const std::string sweep = Write(kStages);
+  const auto refusal = [&](const std::string& command) {
+    const CommandResult result = Ed3r(command);
+    EXPECT_EQ(result.status, 2) << command;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    return result.err;
+  };
+  const std::string out = " --out " + Run();
+  EXPECT_TRUE(Says(refusal("run " + sweep + out + " --stage onlin"), "no stage 'onlin'"));
+  EXPECT_TRUE(Says(refusal("slurm " + sweep + out + " --missing"), "no batch scripts in it"));
+  EXPECT_TRUE(
+      Says(refusal("slurm " + sweep + out + " --partition 'a b'"), "--partition: 'a b' is not allowed"));
+  EXPECT_FALSE(fs::exists(Run()));
+  ExpectDone(Ed3r("slurm " + sweep + out));
+  ExpectDone(Ed3r("slurm " + sweep + out));
+  std::ofstream(Run() + "/slurm/common.sh", std::ios::app) << "module load gcc\n";
+  EXPECT_TRUE(Says(refusal("slurm " + sweep + out), "common.sh: differs from what these options give"));
+  ExpectDone(Ed3r("slurm " + sweep + out + " --force"));
+}
+
+}  // namespace
+}  // namespace ed3r

@@ -1,0 +1,128 @@
+// Many stores as one: tallied in place, merged, and a finished one remembered.
+#include "engine/store/shards.h"
+
+#include <algorithm>
+#include <random>
+
+#include "engine/store/finished.h"
+#include "engine/store/merge.h"
+#include "engine/store/tally.h"
+#include "tests/store/store_fixture.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The missions of TestLayout() dealt among as many stores.
+std::vector<std::string> WriteShards(const std::string& run, int shards) {
+  const std::vector<RunId> all = AllMissions(TestLayout());
+  std::vector<std::string> dirs;
+  for (int shard = 0; shard < shards; ++shard) {
+    std::vector<RunId> mine;
+    for (std::size_t i = static_cast<std::size_t>(shard); i < all.size();
+         i += static_cast<std::size_t>(shards))
+      mine.push_back(all[i]);
+    dirs.push_back(fmt::format("{}/shards/online/{:05}", run, shard));
+    WriteStore(dirs.back(), mine);
+  }
+  return dirs;
+}
+
+TEST(ShardDirsTest, AreThoseWithResults) {
+  const TempDir temp;
+  EXPECT_TRUE(ShardDirs(temp / "run").empty());
+  const std::vector<std::string> dirs = WriteShards(temp / "run", 3);
+  fs::create_directories(temp / "run/shards/online/00009");
+  fs::create_directories(temp / "run/shards/warmup");
+  EXPECT_EQ(ShardDirs(temp / "run"), dirs);
+  EXPECT_EQ(ShardDirs(temp / "run", "online"), dirs);
+  EXPECT_TRUE(ShardDirs(temp / "run", "warmup").empty());
+}
+
+TEST(TallyTest, CountsEachMissionOnceOverAllStores) {
+  const TempDir temp;
+  const std::vector<std::string> dirs = WriteShards(temp / "run", 4);
+  {
+    const auto store = ResultStore::Open(temp / "extra", TestRecipe(), TestLayout());
+    store->PutFailure({0, 0, 1}, "done elsewhere");
+    store->PutFailure({2, 0, 5}, "done elsewhere");
+    store->Commit();
+  }
+  Tally tally(TestLayout());
+  for (const int shard : {0, 1, 2}) tally.Add(dirs[static_cast<std::size_t>(shard)]);
+  tally.Add(dirs[0]);
+  tally.Add(temp / "extra");
+  const std::vector<ArmStatus> arms = tally.Arms();
+  ASSERT_EQ(arms.size(), 4u);
+  std::int64_t done = 0, failed = 0;
+  for (const ArmStatus& arm : arms) {
+    done += arm.done, failed += arm.failed;
+    EXPECT_EQ(arm.done + arm.failed + arm.missing, arm.planned);
+  }
+  EXPECT_EQ(done, 75);
+  // Missions 1 and 45 in plan order: of them shard 1 holds both.
+  EXPECT_EQ(failed, 0);
+
+  Tally failures(TestLayout());
+  failures.Add(temp / "extra");
+  EXPECT_EQ(failures.Arms()[0].failed, 1);
+  EXPECT_EQ(failures.Arms()[0].done, 0);
+}
+
+TEST(TallyTest, AnotherLayoutIsRefused) {
+  const TempDir temp;
+  WriteStore(temp / "run", AllMissions(TestLayout()));
+  RunLayout other = TestLayout();
+  other.stages[0].missions = 41;
+  Tally tally(other);
+  EXPECT_TRUE(Contains(UserErrorOf([&] { tally.Add(temp / "run"); }), "other stages, arms or seed"));
+}
+
+TEST(MergeShardsTest, MoreStoresThanAreReadAtOnceInAnyOrder) {
+  const TempDir temp;
+  WriteStore(temp / "whole", AllMissions(TestLayout()));
+  std::vector<std::string> dirs = WriteShards(temp / "run", 100);
+  std::vector<std::string> twice = dirs;
+  twice.insert(twice.end(), dirs.begin(), dirs.end());
+  std::shuffle(twice.begin(), twice.end(), std::mt19937(1));
+  const MergeSummary summary = MergeStores(temp / "out", twice);
+  EXPECT_EQ(summary.added, 100);
+  EXPECT_EQ(summary.present, 100);
+  EXPECT_EQ(DigestOfDir(temp / "out"), DigestOfDir(temp / "whole"));
+}
+
+TEST(FinishedTest, IsBelievedWhileTheFileIsUntouched) {
+  const TempDir temp;
+  WriteStore(temp / "run", AllMissions(TestLayout()));
+  const std::string digest = DigestOfDir(temp / "run");
+  EXPECT_FALSE(RecallFinished(temp / "run", "this"));
+  RememberFinished(temp / "run", {"this", 100, "a table\n", "networks\n"});
+  const auto finished = RecallFinished(temp / "run", "this");
+  ASSERT_TRUE(finished);
+  EXPECT_EQ(finished->missions, 100);
+  EXPECT_EQ(finished->table, "a table\n");
+  EXPECT_EQ(finished->networks, "networks\n");
+  EXPECT_FALSE(RecallFinished(temp / "run", "another program"));
+  EXPECT_EQ(DigestOfDir(temp / "run"), digest);
+
+  fs::last_write_time(ResultsIn(temp / "run"), fs::file_time_type::clock::now());
+  EXPECT_FALSE(RecallFinished(temp / "run", "this")) << "written to by whatever";
+  RememberFinished(temp / "run", {"this", 100, "", ""});
+  ASSERT_TRUE(RecallFinished(temp / "run", "this"));
+  const auto time = fs::last_write_time(ResultsIn(temp / "run"));
+  Connection(ResultsIn(temp / "run"), Connection::Access::kReadWrite)
+      .Execute("UPDATE timings SET wall_s = 1");
+  fs::last_write_time(ResultsIn(temp / "run"), time);
+  EXPECT_FALSE(RecallFinished(temp / "run", "this")) << "SQLite counts every change";
+}
+
+TEST(FinishedTest, NotWhileAnotherProcessWrites) {
+  const TempDir temp;
+  const auto store = ResultStore::Open(temp / "run", TestRecipe(), TestLayout());
+  RememberFinished(temp / "run", {"this", 0, "", ""});
+  EXPECT_FALSE(RecallFinished(temp / "run", "this"));
+}
+
+}  // namespace
+}  // namespace ed3r
