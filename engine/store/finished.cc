@@ -37,10 +37,19 @@ std::int64_t ChangeCounter(const std::string& file) {
   return counter;
 }
 
-std::int64_t WrittenNs(const std::string& file) {
+struct FileTimes {
+  std::int64_t written_ns = -1, changed_ns = -1;  // the second cannot be set back
+};
+
+FileTimes TimesOf(const std::string& file) {
   struct stat found = {};
-  return stat(file.c_str(), &found) == 0 ? found.st_mtim.tv_sec * kNsPerS + found.st_mtim.tv_nsec : -1;
+  if (stat(file.c_str(), &found) != 0) return {};
+  return {found.st_mtim.tv_sec * kNsPerS + found.st_mtim.tv_nsec,
+          found.st_ctim.tv_sec * kNsPerS + found.st_ctim.tv_nsec};
 }
+
+// Between writing that a run is finished and dating the file so.
+constexpr std::int64_t kLongestDatingNs = 2 * kNsPerS;
 
 bool IsBeingWritten(const std::string& file) {
   return fs::exists(file + "-wal") || fs::exists(file + "-journal");
@@ -85,7 +94,9 @@ std::optional<FinishedRun> RecallFinished(const std::string& dir, const std::str
       database,
       "SELECT change_counter, written_ns, missions, results, networks FROM finished WHERE made_by = ?");
   select.Bind(0, made_by);
-  if (!select.Step() || select.Int(0) != ChangeCounter(file) || select.Int(1) != WrittenNs(file))
+  const FileTimes times = TimesOf(file);
+  if (!select.Step() || select.Int(0) != ChangeCounter(file) || select.Int(1) != times.written_ns ||
+      times.changed_ns - times.written_ns > kLongestDatingNs)
     return std::nullopt;
   return FinishedRun{made_by, select.Int(2), select.Text(3), select.Text(4)};
 }

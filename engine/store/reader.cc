@@ -16,26 +16,11 @@
 namespace ed3r {
 namespace {
 
-// A writer that was ended while it closed the file leaves a journal, and a connection that only reads may not roll it back.
-// Not where a writer lives: the journal is its own then.
-void RollBack(const std::string& dir, const std::string& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file + "-journal", error)) return;
-  const std::optional<DirectoryLock> lock = DirectoryLock::TryLock(dir);
-  if (!lock) return;
-  try {
-    Connection(file, Connection::Access::kReadWrite).Int("PRAGMA user_version");
-  } catch (const UserError&) {  // no permission to write: the reader says what is in its way
-  } catch (const StoreError&) {
-  }
-}
-
 std::string ExistingFile(const std::string& dir) {
   const std::filesystem::path file = std::filesystem::path(dir) / kResultsFile;
   if (!std::filesystem::is_directory(dir)) throw UserError(fmt::format("{}: no such directory", dir));
   if (!std::filesystem::exists(file))
     throw UserError(fmt::format("{}: no results in it ({} is missing)", dir, kResultsFile));
-  RollBack(dir, file.string());
   return file.string();
 }
 

@@ -60,7 +60,9 @@ class Books {
 
   bool Trainings(const BatchStep& step, int number, Owed& owed) const {
     if (has_networks_) return false;
-    const std::vector<bool> cached = NetworksInCache(plan_, {run_dir_, cache_dir_});
+    TrainingOptions options;
+    options.run_dir = run_dir_, options.cache_dir = cache_dir_;
+    const std::vector<bool> cached = NetworksInCache(plan_, options);
     for (std::size_t i = 0; i < cached.size(); ++i)
       if (!cached[i]) owed.tasks.push_back(TaskOf(static_cast<std::int64_t>(i), step.tasks));
     std::sort(owed.tasks.begin(), owed.tasks.end());
