@@ -45,8 +45,8 @@ TEST(TallyTest, CountsEachMissionOnceOverAllStores) {
   const std::vector<std::string> dirs = WriteShards(temp / "run", 4);
   {
     const auto store = ResultStore::Open(temp / "extra", TestRecipe(), TestLayout());
-    store->PutFailure({0, 0, 1}, "done elsewhere");
-    store->PutFailure({2, 0, 5}, "done elsewhere");
+    store->PutFailure({0, 0, 1}, {"bad-input", "done elsewhere"});
+    store->PutFailure({2, 0, 5}, {"bad-input", "done elsewhere"});
     store->Commit();
   }
   Tally tally(TestLayout());

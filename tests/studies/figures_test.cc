@@ -234,8 +234,9 @@ TEST(FigureDataTest, VariantsHaveAFigureOfTheirOwn) {
   const VariantStudy study = CompareVariants(both);
   const std::vector<ArmData> arms = {Arm("rbs")};
   const std::vector<ArmMetrics> metrics = {ComputeMetrics(arms[0])};
-  const auto data = MakeFigureData(
-      {.name = "test", .arms = arms, .metrics = metrics, .scene_note = "", .variants = &study});
+  FigureInputs inputs;
+  inputs.name = "test", inputs.arms = arms, inputs.metrics = metrics, inputs.variants = &study;
+  const auto data = MakeFigureData(inputs);
   EXPECT_EQ(data.at("figures").back().at("id"), "variants");
   EXPECT_EQ(data.at("variants").at("base"), "base");
   EXPECT_EQ(data.at("variants").at("names"), (nlohmann::ordered_json{"heavy"}));

@@ -89,7 +89,7 @@ TEST(PageSlicesTest, FailuresAreListedByCauseWithTheirNumbers) {
 TEST(PageSlicesTest, TheDataStaySmallForManyMissions) {
   constexpr int kMissions = 10000, kArms = 9, kSites = 14;
   const ArmData five = FiveMissions();
-  ArmData arm{.stage = "online", .name = "rbs"};
+  ArmData arm{.stage = "online", .name = "rbs", .missions = {}};
   std::vector<int> numbers;
   for (int i = 0; i < kMissions; ++i) {
     MissionRecord mission = five.missions[static_cast<std::size_t>(i) % 5];
