@@ -64,8 +64,8 @@ class ResultReader {
   const RecordTables& Tables() const { return *tables_; }
 
   std::vector<RunId> Stored();
-  std::int64_t CountMissions();  // rows, whatever is in them
-  std::vector<ArmStatus> Status();
+  std::int64_t CountMissions();     // rows, whatever is in them
+  std::vector<ArmStatus> Status();  // counts keys alone: FindDamage() compares what they hold
   std::vector<FailedMission> Failures();
   std::vector<Session> Sessions();  // in order of their begin
 

@@ -80,7 +80,8 @@ TEST(FormatTest, AColumnThatTheFileLacksHasItsInitialValue) {
   const TempDir temp;
   WriteStore(temp / "run", {{0, 0, 0}, {2, 1, 3}});
   Sql(ResultsIn(temp / "run"),
-      "ALTER TABLE timesteps DROP COLUMN rate_bps; ALTER TABLE missions DROP COLUMN network");
+      "DROP VIEW named_timesteps; DROP VIEW named_missions; ALTER TABLE timesteps DROP COLUMN rate_bps; "
+      "ALTER TABLE missions DROP COLUMN network");
   {
     Connection database(ResultsIn(temp / "run"), Connection::Access::kReadWrite);
     const RecordTables tables(database);

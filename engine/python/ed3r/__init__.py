@@ -3,7 +3,7 @@
     import ed3r
     env = ed3r.VectorEnv("sweeps/rbs.yaml", num_envs=64)       # Gymnasium's vector interface; step many missions at once
     run = ed3r.fly("sweeps/own_policy.yaml", policy)           # store missions of a policy as an ordinary arm
-    run = ed3r.Run("results/runs/own-policy")                  # missions and timesteps as numpy arrays
+    run = ed3r.Run("results/runs/own_policy")                  # missions and timesteps as numpy arrays
 
 Energies are in joule, lengths in metre, angles in radian, times in second.
 """
