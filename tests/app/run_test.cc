@@ -220,7 +220,8 @@ TEST(RunTest, BadInputWritesNothing) {
       {"--set mission.strategy=rsb",
        "--set mission.strategy=rsb: mission.strategy: 'rsb' is not allowed; allowed: random | random-offload "
        "| rbs | ed3r | "
-       "ablation-1 | ablation-2 | ablation-3 | ablation-4 | ecd2r; did you mean rbs?\n"},
+       "ablation-1 | ablation-2 | ablation-3 | ablation-4 | ecd2r | look-level | external; did you mean "
+       "rbs?\n"},
       {"--missions 0", "--missions: '0' is not allowed; allowed: 1 .. 10000000\n"},
       {"--missions online=x", "--missions: 'x' is not allowed; allowed: 1 .. 10000000\n"},
       {"--missions =3", "--missions: '=3' is not allowed; allowed: N or STAGE=N\n"},
