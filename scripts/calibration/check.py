@@ -4,6 +4,7 @@ A search is reproduced when every wave chooses the recorded points, given the re
 flies again gives what is recorded of it. The first is asked of all waves, the second of points drawn from each.
 """
 
+import math
 import random
 
 from calibration import flights, record
@@ -12,6 +13,12 @@ from calibration import flights, record
 def rounded(row):
     """As the file has it."""
     return {key: f"{value:.6g}" if isinstance(value, float) else str(value) for key, value in row.items()}
+
+
+def told(row):
+    """What a row says; a world that the family lacks has no measures."""
+    return {key: value for key, value in row.items() if key != "frozen" and not key.endswith("implausibility")
+            and not (isinstance(value, float) and math.isnan(value))}
 
 
 def differing(expected, found):
@@ -34,10 +41,9 @@ def check(search, waves, seed, count, say=print):
                               say=lambda *_, **__: None)
         for i, (point, measures) in zip(chosen, results):
             again = record.row_of(number, i, missions, point, measures)
-            names = [name for name in differing({key: flown[i][key] for key in again if key != "frozen"}, again)
-                     if not name.endswith("implausibility")]
+            names = differing(told(flown[i]), again) + [name for name in told(again) if name not in told(flown[i])]
             if names:
-                say(f"wave {number} point {i}: {names[0]} is {again[names[0]]}, recorded {flown[i][names[0]]}", flush=True)
+                say(f"wave {number} point {i}: {names[0]} is {again.get(names[0])}, recorded {flown[i].get(names[0])}", flush=True)
             others += bool(names)
         say(f"wave {number}: {len(chosen)} points flown again", flush=True)
         faults += others

@@ -122,6 +122,7 @@ def write_table(folder, row, rows):
         verdict = "yes" if equivalent(row[name], paper, error, percentage) else "no"
         lines.append(f"{name:<28}{paper:>9.2f}{row[name]:>9.2f}{row[f'{name}_error']:>7.2f}  {verdict}")
     counted = sorted((len(equivalents(other)) for other in record.flown(rows) if other["missions"] >= 300), reverse=True)
+    lines.append("By the seeds that chose this world and without our own error: fresh seeds are in README.")
     lines.append(f"{len(equivalents(row))} of {len(PRINTED)}; the most of any of {len(counted)} flights of 300 missions and more: "
                  f"{counted[0]}. P85 MSR and WER cannot be: the paper's own 128 missions leave more than the margin.")
     (folder / "rbs.txt").write_text("\n".join(lines) + "\n")

@@ -110,7 +110,7 @@ def hangs_on_lines(worlds, points):
     units = np.array([[parameter.unit(points[world][parameter.name] if parameter.levels else
                                       float(points[world][parameter.name])) for parameter in SPACE] for world in worlds])
     lines = ["What it hangs on: rank correlation over the worlds with the three parameters that show most (* less than 5 % chance",
-             "that any of the parameters shows as much by luck)", ""]
+             "that any of the parameters shows as much by luck; of 22 outcomes one would by chance)", ""]
     effects = [effects_of(arms) for arms in worlds.values()]
     outcomes = {name: [effect[name] for effect in effects] for name in effects[0]}
     for metric, word in (("total_energy_kj", "energy"), ("msr_pct", "success"), ("fp_pct", "false positives"), ("or_pct", "offloading")):

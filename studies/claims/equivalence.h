@@ -20,7 +20,7 @@ bool IsPercentage(const Claim& claim);
 inline constexpr double kPaperMissions = 850, kPaperMissionsInP85 = 128;
 
 enum class SizeVerdict {
-  kEquivalent,  // all of the interval lies within the margin
+  kEquivalent,  // all of the interval lies within the margin, which begins where the rounding ends
   kImprecise,   // the interval holds no difference at all, but reaches beyond the margin
   kDiffers      // the interval holds neither
 };

@@ -45,7 +45,7 @@ Luck LuckOf(const JudgedClaim& judged) {
     values.push_back(scale.To(network.ours));
     if (std::isnan(network.own_sd)) continue;
     own_variances.push_back(std::pow(slope * network.own_sd, 2));
-    paper_variances.push_back(std::pow(slope * network.paper_sd, 2));
+    paper_variances.push_back(std::pow(scale.SlopeAt(paper->value) * network.paper_sd, 2));
   }
   if (values.size() < 2 || !judged.asks_networks) return Luck::kUnknown;
   const auto count = static_cast<double>(values.size());

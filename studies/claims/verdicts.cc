@@ -190,7 +190,9 @@ class Round {
     std::vector<std::size_t> member(parsed_.size());
     for (std::size_t i = 0; i < parsed_.size(); ++i) {
       if (!evidence_[i] || !evidence_[i]->directional) continue;
-      const auto [found, fresh] = family.try_emplace(CanonicalText(*parsed_[i].expression), p_for.size());
+      const auto [found, fresh] = family.try_emplace(
+          fmt::format("{}|{}", CanonicalText(*parsed_[i].expression), parsed_[i].claim->tolerance),
+          p_for.size());
       member[i] = found->second;
       if (fresh) p_for.push_back(evidence_[i]->p_for), p_against.push_back(evidence_[i]->p_against);
     }
