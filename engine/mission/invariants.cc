@@ -141,7 +141,7 @@ void CheckBattery(const MissionRecord& record) {
 void CheckPositions(const MissionRecord& record, const Scene& scene, double gust_mps) {
   const double tolerance_m = kPositionToleranceM + kSettleLimitS * gust_mps;
   const auto check = [&](std::int64_t k, double x_m, double y_m, double z_m) {
-    const Eigen::Vector3d size_m = scene.SizeM();
+    const Eigen::Vector3d& size_m = scene.SizeM();
     const double ground_m = scene.Ground().HeightAt(x_m, y_m);
     for (const auto& [name, at, low, high] :
          {std::tuple{"x_m", x_m, 0.0, size_m.x()}, std::tuple{"y_m", y_m, 0.0, size_m.y()},
