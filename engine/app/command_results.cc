@@ -52,14 +52,7 @@ Check CheckOf(ResultReader& reader) {
 }
 
 void PrintStatusJson(ResultReader& reader, const Check& check) {
-  nlohmann::ordered_json object = {{"name", reader.Layout().name}, {"arms", nlohmann::ordered_json::array()}};
-  for (const ArmStatus& arm : reader.Status())
-    object["arms"].push_back({{"stage", arm.stage},
-                              {"arm", arm.arm},
-                              {"planned", arm.planned},
-                              {"done", arm.done},
-                              {"failed", arm.failed},
-                              {"missing", arm.missing}});
+  nlohmann::ordered_json object = {{"name", reader.Layout().name}, {"arms", ArmsJson(reader.Status())}};
   const std::vector<FailedMission> failures = reader.Failures();
   object["failure_kinds"] = FailureKindsJson(failures);
   object["failures"] = FailuresJson(reader.Layout(), failures);

@@ -80,14 +80,7 @@ Found Look(const std::string& dir) {
 }
 
 void PrintJson(const Found& found) {
-  nlohmann::ordered_json object = {{"name", found.name}, {"arms", nlohmann::ordered_json::array()}};
-  for (const ArmStatus& arm : found.arms)
-    object["arms"].push_back({{"stage", arm.stage},
-                              {"arm", arm.arm},
-                              {"planned", arm.planned},
-                              {"done", arm.done},
-                              {"failed", arm.failed},
-                              {"missing", arm.missing}});
+  nlohmann::ordered_json object = {{"name", found.name}, {"arms", ArmsJson(found.arms)}};
   object["stores"] = found.stores;
   object["growing"] = found.growing;
   object["expected_end_utc"] = nullptr;
@@ -111,6 +104,18 @@ void PrintText(const Found& found) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json ArmsJson(const std::vector<ArmStatus>& arms) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const ArmStatus& arm : arms)
+    json.push_back({{"stage", arm.stage},
+                    {"arm", arm.arm},
+                    {"planned", arm.planned},
+                    {"done", arm.done},
+                    {"failed", arm.failed},
+                    {"missing", arm.missing}});
+  return json;
+}
 
 bool IsTallied(const std::string& dir) {
   if (!ShardDirs(dir).empty()) return true;

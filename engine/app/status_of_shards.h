@@ -1,9 +1,16 @@
 // The status of a run whose missions lie in many stores: the merged run and the shards of a batch system's tasks.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
+
+#include "engine/store/reader.h"
 
 namespace ed3r {
+
+// As 'ed3r status --json' lists them.
+nlohmann::ordered_json ArmsJson(const std::vector<ArmStatus>& arms);
 
 // Whether there are shards, or more missions than can be compared with their checksums in a second.
 bool IsTallied(const std::string& dir);

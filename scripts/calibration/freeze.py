@@ -23,7 +23,7 @@ from calibration.waves import CUT
 WORLDS = ROOT / "sweeps/worlds"
 MATCHED = 21  # worlds that are kept at least
 
-SWEEP = """# What of the paper holds in every world that its random walk does not rule out?   (written by scripts/calibrate.py freeze)
+SWEEP = """# What of the paper holds in the worlds whose random walk comes nearest to the paper's?   (written by scripts/calibrate.py freeze)
 name: matched
 seed: 20260101
 missions: {missions}
@@ -87,7 +87,7 @@ def write_worlds(matched):
     for file, row in zip(files, matched):
         base = "ridges.yaml" if file.parent == WORLDS else "../ridges.yaml"
         about = ("The default world: what the paper leaves open was found from what it says of its random walk alone."
-                 if file.parent == WORLDS else "A world that the paper's random walk does not rule out.")
+                 if file.parent == WORLDS else "One of the worlds whose random walk comes nearest to the paper's.")
         file.write_text(world_text(record.point_of(row), file.stem, base, f"{about} (scripts/calibrate.py)"))
     return files
 
