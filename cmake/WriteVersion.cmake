@@ -33,7 +33,7 @@ file(CONFIGURE OUTPUT "${OUTPUT}" CONTENT [[#include "engine/core/version.h"
 namespace ed3r {
 
 CodeVersion ThisCode() {
-  return {"@source_hash@", "@flight@", "@pixels@", "@training@", "@precision@", "@commit@", @dirty@, "@COMPILER@", "@FLAGS@"};
+  return {"@RELEASE@", "@source_hash@", "@flight@", "@pixels@", "@training@", "@precision@", "@commit@", @dirty@, "@COMPILER@", "@FLAGS@"};
 }
 
 }  // namespace ed3r

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "engine/core/math_library.h"
+#include "engine/core/shipped.h"
 #include "engine/core/version.h"
 #include "kernels/simd_level.h"
 
@@ -57,6 +58,8 @@ std::map<std::string, std::string> DescribeMachine() {
       {"openmp_threads", std::to_string(ObtainedThreads(cores))},
       {"compiler", code.compiler},
       {"flags", code.flags},
+      {"release", code.release},
+      {"shipped sweeps", ShippedSweeps().string()},
       {"commit", fmt::format("{}{}", code.commit, code.dirty ? " with uncommitted changes" : "")},
       {"libm", MathLibraryIdentity()},
       {"source", fmt::format("flight {}, pixels {}, training {}, precision {}", code.flight, code.pixels,

@@ -54,12 +54,16 @@ void CheckArguments(int argc, char** argv) {
     if (!IsUtf8(argv[i])) throw UserError(fmt::format("ed3r: argument {} is not UTF-8 text", i));
 }
 
+std::string VersionText() {
+  const CodeVersion code = ThisCode();
+  return fmt::format("ed3r {} (commit {}{}, source {}, {})", code.release, code.commit,
+                     code.dirty ? " with changes" : "", code.source_hash, SimdLevelName(ActiveSimdLevel()));
+}
+
 int RunCommand(int argc, char** argv, CLI::App& program) {
   program.name("ed3r");
   program.require_subcommand(1);
-  const CodeVersion code = ThisCode();
-  program.set_version_flag("--version", fmt::format("ed3r {}{} source {}", code.commit,
-                                                    code.dirty ? "+changes" : "", code.source_hash));
+  program.set_version_flag("--version", VersionText);
   const std::vector<Command> commands = AddCommands(program);
   try {
     CheckArguments(argc, argv);

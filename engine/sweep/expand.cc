@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <set>
 
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
+#include "engine/core/shipped.h"
 #include "engine/sweep/arm_name.h"
 #include "engine/sweep/sweep_file.h"
 
@@ -18,6 +20,15 @@ void Apply(const Setting& setting, Arm& arm) {
   const std::string problem = SetParameter(arm.config, setting.key, setting.text);
   ED3R_CHECK(problem.empty(), problem);  // checked when it was read
   if (NamesAFile(setting.key)) arm.files[setting.key] = setting.canonical;
+}
+
+// The world of a sweep that names none: beside the sweep file, as in the shipped folder, or else that folder's own.
+std::string DefaultWorld(const std::string& folder, const std::string& world) {
+  const std::string beside = PathFrom(folder, world);
+  std::error_code error;
+  if (std::filesystem::exists(beside, error)) return beside;
+  const std::filesystem::path shipped = ShippedSweeps() / world;
+  return std::filesystem::exists(shipped, error) ? shipped.string() : beside;
 }
 
 // Combinations of the axes; the largest number there is when they are even more.
@@ -60,7 +71,7 @@ class StageExpander {
     fixed_ = MergedSettings(fixed, overrides);
     Arm common;
     common.files["mission.world"] = common.config.mission.world;
-    common.config.mission.world = PathFrom(top_folder, common.config.mission.world);
+    common.config.mission.world = DefaultWorld(top_folder, common.config.mission.world);
     for (const Setting& setting : fixed_) Apply(setting, common);
     for (std::int64_t index = 0; index < Size(); ++index) AddCombination(index, common);
     if (stage_.arms.empty())

@@ -15,6 +15,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/core/shipped.h"
 
 extern char** environ;
 
@@ -90,7 +91,7 @@ int RunProgram(const std::vector<std::string>& command, const fs::path& errors) 
 
 DrawResult DrawFigures(const std::string& folder, const std::string& script_name) {
   const std::string python = Environment("ED3R_PYTHON", "/usr/bin/python3");
-  const fs::path script = fs::path(Environment("ED3R_SCRIPTS", ED3R_SCRIPTS_DIR)) / script_name;
+  const fs::path script = ShippedFolder("ED3R_SCRIPTS", "scripts", ED3R_SCRIPTS_DIR) / script_name;
   if (!fs::exists(script))
     return {Drawing::kUnavailable,
             fmt::format("{} is not there; set ED3R_SCRIPTS to its folder", script.string())};

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "engine/core/file.h"
+#include "engine/core/shipped.h"
 #include "studies/report/page_parts.h"
 
 namespace ed3r {
@@ -26,11 +26,6 @@ std::string ScriptSafe(std::string json) {
   return out;
 }
 
-fs::path WebFolder() {
-  const char* folder = std::getenv("ED3R_WEB");
-  return folder != nullptr && *folder != '\0' ? folder : ED3R_WEB_DIR;
-}
-
 // Nothing is loaded from anywhere, whatever a name in the data says.
 constexpr char kPolicy[] =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
@@ -41,7 +36,7 @@ constexpr char kPolicy[] =
 FoundBundle FindWebBundle(const std::string& name) {
   WebBundle bundle;
   for (const auto& [ending, content] : {std::pair{".js", &bundle.script}, std::pair{".css", &bundle.style}}) {
-    const std::string file = (WebFolder() / (name + ending)).string();
+    const std::string file = (ShippedFolder("ED3R_WEB", "web", ED3R_WEB_DIR) / (name + ending)).string();
     std::string why;
     if (!TryReadFile(file, kMaxTextBytes, *content, why))
       return {std::nullopt,

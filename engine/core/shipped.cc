@@ -1,0 +1,24 @@
+#include "engine/core/shipped.h"
+
+#include <cstdlib>
+#include <system_error>
+
+namespace ed3r {
+
+namespace fs = std::filesystem;
+
+fs::path ShippedFolder(const char* variable, const std::string& name, const std::string& source) {
+  const char* value = std::getenv(variable);
+  if (value != nullptr && *value != '\0') return value;
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    const fs::path installed = program.parent_path().parent_path() / "share" / "ed3r" / name;
+    if (fs::is_directory(installed, error)) return installed;
+  }
+  return source;
+}
+
+fs::path ShippedSweeps() { return ShippedFolder("ED3R_SWEEPS", "sweeps", ED3R_SWEEPS_DIR); }
+
+}  // namespace ed3r
