@@ -123,19 +123,19 @@ int Compare(const Options& options) {
 
 }  // namespace
 
-Command AddCompare(CLI::App& program) {
+Command AddCompare(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand(
+  CommandLine parser = program.AddCommand(
       "compare",
       "Runs of the same arms, each compared with the first: differences paired by scenario, and the paper's "
       "claims that are judged otherwise");
-  parser->add_option("DIR", options->dirs, "Run directories")->required();
+  parser.Option("DIR", options->dirs, "Run directories").Required();
   parser
-      ->add_option("--out", options->out,
-                   "Folder for index.html, compare.txt, differences.csv, verdicts.csv and manifest.json")
-      ->check(NotEmpty());
-  parser->add_flag("--json", options->json, "Print JSON");
-  parser->footer(
+      .Option("--out", options->out,
+              "Folder for index.html, compare.txt, differences.csv, verdicts.csv and manifest.json")
+      .Path();
+  parser.Flag("--json", options->json, "Print JSON");
+  parser.Footer(
       "Runs of one seed meet the same scenarios; runs of different seeds are compared as independent draws "
       "at the same places. Where an arm flew with a single trained network on one side, the luck of training "
       "is not in the interval (training.seeds).");

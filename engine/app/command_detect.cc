@@ -158,16 +158,15 @@ int Detect(const Options& options) {
 
 }  // namespace
 
-Command AddDetect(CLI::App& program) {
+Command AddDetect(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand("detect",
-                                            "What the detectors say of a data set of 'ed3r frames' (scores "
-                                            "by distance and occlusion) or of pictures");
-  parser->add_option("PATH", options->path, "Folder of 'ed3r frames', folder of pictures, or one picture")
-      ->required();
-  parser->add_option("--set", options->settings, "KEY=VALUE; e.g. perception.detector.full=mine.onnx")
-      ->allow_extra_args(false);
-  parser->add_flag("--json", options->json, "Print JSON");
+  CommandLine parser = program.AddCommand("detect",
+                                          "What the detectors say of a data set of 'ed3r frames' (scores "
+                                          "by distance and occlusion) or of pictures");
+  parser.Option("PATH", options->path, "Folder of 'ed3r frames', folder of pictures, or one picture")
+      .Required();
+  parser.Option("--set", options->settings, "KEY=VALUE; e.g. perception.detector.full=mine.onnx").OneValue();
+  parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] { return Detect(*options); }};
 }
 

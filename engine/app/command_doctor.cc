@@ -73,11 +73,11 @@ int Examine(bool json) {
 
 }  // namespace
 
-Command AddDoctor(CLI::App& program) {
+Command AddDoctor(Program& program) {
   auto json = std::make_shared<bool>(false);
-  CLI::App* parser =
-      program.add_subcommand("doctor", "CPU, SIMD level, threads, library versions, sanity checks");
-  parser->add_flag("--json", *json, "Print JSON");
+  CommandLine parser =
+      program.AddCommand("doctor", "CPU, SIMD level, threads, library versions, sanity checks");
+  parser.Flag("--json", *json, "Print JSON");
   return {parser, [json] { return Examine(*json); }};
 }
 

@@ -129,18 +129,16 @@ int Explain(const Options& options) {
 
 }  // namespace
 
-Command AddExplain(CLI::App& program) {
+Command AddExplain(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand(
+  CommandLine parser = program.AddCommand(
       "explain",
       "Why a timestep went as it did: candidates, predicted rewards, mechanism, chosen action, reward");
-  parser->add_option("DIR", options->dir, "Run directory")->required();
-  parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. ed3r-75/12; missions count from 0")
-      ->required();
-  parser->add_option("--step", options->step, "Timestep; timesteps count from 1")->required();
-  parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache")
-      ->check(NotEmpty());
-  parser->add_flag("--json", options->json, "Print JSON");
+  parser.Option("DIR", options->dir, "Run directory").Required();
+  parser.Option("MISSION", options->mission, "ARM/NUMBER, e.g. ed3r-75/12; missions count from 0").Required();
+  parser.Option("--step", options->step, "Timestep; timesteps count from 1").Required();
+  parser.Option("--cache", options->cache, "Where trained networks are kept; default results/cache").Path();
+  parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] { return Explain(*options); }};
 }
 

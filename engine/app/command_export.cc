@@ -69,17 +69,17 @@ int Export(const Options& options) {
 
 }  // namespace
 
-Command AddExport(CLI::App& program) {
+Command AddExport(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand(
+  CommandLine parser = program.AddCommand(
       "export", "Missions and timesteps as tables for other tools, networks as ONNX files");
-  parser->add_option("DIR", options->dir, "Run directory")->required();
-  parser->add_flag("--csv", options->csv, "missions.csv and timesteps.csv");
-  parser->add_flag("--numpy", options->numpy, "missions.npy and timesteps.npy: structured arrays");
-  parser->add_flag("--networks", options->networks,
-                   "The networks that flew, for networks.rc and networks.robot of another sweep");
-  parser->add_option("--out", options->out, "Folder to write to; default DIR/export")->check(NotEmpty());
-  parser->footer(
+  parser.Option("DIR", options->dir, "Run directory").Required();
+  parser.Flag("--csv", options->csv, "missions.csv and timesteps.csv");
+  parser.Flag("--numpy", options->numpy, "missions.npy and timesteps.npy: structured arrays");
+  parser.Flag("--networks", options->networks,
+              "The networks that flew, for networks.rc and networks.robot of another sweep");
+  parser.Option("--out", options->out, "Folder to write to; default DIR/export").Path();
+  parser.Footer(
       "Columns have their units in their names; stage, arm, outcome, motion_rule and execution are words. "
       "Parquet is not "
       "written: Debian 12 packages no library for it.");

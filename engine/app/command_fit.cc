@@ -76,38 +76,33 @@ int Fit(Options options) {
 
 }  // namespace
 
-Command AddFit(CLI::App& program) {
+Command AddFit(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand(
-      "fit", "Energy parameters fitted to flight logs: values, 95 % intervals, residuals");
-  parser->add_option("LOG", options->fit.logs, "Flight logs (CSV)");
-  parser->add_option("--format", options->fit.format, "Columns: m100 | ardupilot | FILE.yaml; default m100");
-  parser->add_option("--evaluate", options->fit.evaluate, "Logs that only judge the fit")
-      ->allow_extra_args(false);
-  parser->add_option("--evaluate-format", options->fit.evaluate_format,
-                     "Their columns; default those of LOG");
+  CommandLine parser =
+      program.AddCommand("fit", "Energy parameters fitted to flight logs: values, 95 % intervals, residuals");
+  parser.Option("LOG", options->fit.logs, "Flight logs (CSV)");
+  parser.Option("--format", options->fit.format, "Columns: m100 | ardupilot | FILE.yaml; default m100");
+  parser.Option("--evaluate", options->fit.evaluate, "Logs that only judge the fit").OneValue();
+  parser.Option("--evaluate-format", options->fit.evaluate_format, "Their columns; default those of LOG");
   parser
-      ->add_option("--perception", options->perception,
-                   "Instead of LOG: fit the fast perception tier to a run of the pixel tier (run directory)")
-      ->excludes("LOG");
-  parser->add_option("--set", options->set, "robot.KEY=VALUE of the airframe that flew")
-      ->allow_extra_args(false);
+      .Option("--perception", options->perception,
+              "Instead of LOG: fit the fast perception tier to a run of the pixel tier (run directory)")
+      .Excludes("LOG");
+  parser.Option("--set", options->set, "robot.KEY=VALUE of the airframe that flew").OneValue();
   parser
-      ->add_option("--out", options->out,
-                   "Folder for report, fitted.yaml, flights.csv and rows.csv; with --perception for "
-                   "perception.yaml, perception.json, looks.csv")
-      ->check(NotEmpty());
-  CLI::Option* check =
-      parser
-          ->add_option(
-              "--self-check", options->self_check.fits,
+      .Option("--out", options->out,
+              "Folder for report, fitted.yaml, flights.csv and rows.csv; with --perception for "
+              "perception.yaml, perception.json, looks.csv")
+      .Path();
+  parser
+      .Option("--self-check", options->self_check.fits,
               "Instead of LOG: fit this many synthetic logs and say how often the intervals hold the truth")
-          ->check(CLI::Range(1, 1000000))
-          ->excludes("LOG");
-  parser->add_option("--model", options->self_check.model, "Model of the synthetic logs; default momentum")
-      ->needs(check);
-  parser->add_flag("--no-figures", options->no_figures, "With --out: draw nothing (no Python)");
-  parser->add_flag("--json", options->json, "Print JSON");
+      .Range(1, 1000000)
+      .Excludes("LOG");
+  parser.Option("--model", options->self_check.model, "Model of the synthetic logs; default momentum")
+      .Needs("--self-check");
+  parser.Flag("--no-figures", options->no_figures, "With --out: draw nothing (no Python)");
+  parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] { return Fit(*options); }};
 }
 

@@ -183,25 +183,21 @@ int WriteFrames(const Options& options) {
 
 }  // namespace
 
-Command AddFrames(CLI::App& program) {
+Command AddFrames(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand("frames", "Renders a labelled data set for training detectors");
-  parser->add_option("--out", options->out, "Folder for frames.npy, labels.csv, manifest.json and pictures")
-      ->required()
-      ->check(NotEmpty());
-  parser
-      ->add_option("--world", options->worlds,
-                   "World file (YAML), repeatable; default: the two training worlds")
-      ->allow_extra_args(false);
-  parser->add_option("--views", options->views,
-                     "Views, half of them with fire or smoke in sight; default 1000");
-  parser->add_option("--frames", options->frames,
-                     "Frames of each view, spread over its sensing period; default 4");
-  parser->add_option("--seed", options->seed, "Seed of poses, weather and flicker; default 20260101");
-  parser->add_option("--pictures", options->pictures, "Views of which PNG files are written too; default 8");
-  parser->add_option("--size", options->size, "WxH in pixels in place of perception.render's");
-  parser->add_option("--set", options->settings, "KEY=VALUE; e.g. perception.render.noise=4")
-      ->allow_extra_args(false);
+  CommandLine parser = program.AddCommand("frames", "Renders a labelled data set for training detectors");
+  parser.Option("--out", options->out, "Folder for frames.npy, labels.csv, manifest.json and pictures")
+      .Required()
+      .Path();
+  parser.Option("--world", options->worlds, "World file (YAML), repeatable; default: the two training worlds")
+      .OneValue();
+  parser.Option("--views", options->views, "Views, half of them with fire or smoke in sight; default 1000");
+  parser.Option("--frames", options->frames,
+                "Frames of each view, spread over its sensing period; default 4");
+  parser.Option("--seed", options->seed, "Seed of poses, weather and flicker; default 20260101");
+  parser.Option("--pictures", options->pictures, "Views of which PNG files are written too; default 8");
+  parser.Option("--size", options->size, "WxH in pixels in place of perception.render's");
+  parser.Option("--set", options->settings, "KEY=VALUE; e.g. perception.render.noise=4").OneValue();
   return {parser, [options] { return WriteFrames(*options); }};
 }
 

@@ -73,12 +73,12 @@ void PrintTable(const std::vector<ParameterInfo>& parameters) {
 
 }  // namespace
 
-Command AddParams(CLI::App& program) {
+Command AddParams(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand(
-      "params", "Every parameter: key, default, unit, allowed values, meaning, source");
-  parser->add_option("FILTER", options->filter, "Only keys that contain this text");
-  parser->add_flag("--json", options->json, "Print JSON");
+  CommandLine parser =
+      program.AddCommand("params", "Every parameter: key, default, unit, allowed values, meaning, source");
+  parser.Option("FILTER", options->filter, "Only keys that contain this text");
+  parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
             const std::vector<ParameterInfo> selected = Selected(options->filter);
             options->json ? PrintJson(selected) : PrintTable(selected);

@@ -69,13 +69,12 @@ int Print(const Options& options) {
 
 }  // namespace
 
-Command AddPhysics(CLI::App& program) {
+Command AddPhysics(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand(
-      "physics", "Closed-form powers, times, energies and link budget at given values");
-  parser->add_option("--set", options->settings, "KEY=VALUE; any key of 'ed3r params'")
-      ->allow_extra_args(false);
-  parser->add_flag("--json", options->json, "Print JSON");
+  CommandLine parser =
+      program.AddCommand("physics", "Closed-form powers, times, energies and link budget at given values");
+  parser.Option("--set", options->settings, "KEY=VALUE; any key of 'ed3r params'").OneValue();
+  parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] { return Print(*options); }};
 }
 

@@ -64,12 +64,12 @@ void PrintText(const SweepPlan& plan, int threads) {
 
 }  // namespace
 
-Command AddPlan(CLI::App& program) {
+Command AddPlan(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser =
-      program.add_subcommand("plan", "Stages, arms, missions and expected time of a sweep; flies nothing");
-  options->sweep.AddTo(*parser);
-  parser->add_flag("--json", options->json, "Print JSON");
+  CommandLine parser =
+      program.AddCommand("plan", "Stages, arms, missions and expected time of a sweep; flies nothing");
+  options->sweep.AddTo(parser);
+  parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
             const SweepPlan plan = options->sweep.Load();
             const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

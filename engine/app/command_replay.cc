@@ -147,28 +147,22 @@ int Replay(const Options& options) {
 
 }  // namespace
 
-Command AddReplay(CLI::App& program) {
+Command AddReplay(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand(
+  CommandLine parser = program.AddCommand(
       "replay", "Flies a stored mission again, checks that it is identical, writes its trace and map");
-  parser->add_option("DIR", options->dir, "Run directory")->required();
-  parser->add_option("MISSION", options->mission, "ARM/NUMBER, e.g. rbs/12; missions count from 0")
-      ->required();
-  parser->add_option("--out", options->out, "Folder for trace and map; default DIR/replay/MISSION")
-      ->check(NotEmpty());
+  parser.Option("DIR", options->dir, "Run directory").Required();
+  parser.Option("MISSION", options->mission, "ARM/NUMBER, e.g. rbs/12; missions count from 0").Required();
+  parser.Option("--out", options->out, "Folder for trace and map; default DIR/replay/MISSION").Path();
   parser
-      ->add_option("--frames", options->frames,
-                   "Also pictures of what the camera saw in these timesteps, from 1; e.g. 1,4 or 1 4")
-      ->delimiter(',')
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->type_name("K[,K...]");
-  parser->add_flag("--html", options->html,
-                   "Also mission.html: the mission to watch in a browser, in one file that needs no network");
-  parser->add_option("--beside", options->beside,
-                     "Another mission, shown beside it on the same clock (with --html)");
-  parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache")
-      ->check(NotEmpty());
+      .Option("--frames", options->frames,
+              "Also pictures of what the camera saw in these timesteps, from 1; e.g. 1,4 or 1 4")
+      .Numbers("K[,K...]");
+  parser.Flag("--html", options->html,
+              "Also mission.html: the mission to watch in a browser, in one file that needs no network");
+  parser.Option("--beside", options->beside,
+                "Another mission, shown beside it on the same clock (with --html)");
+  parser.Option("--cache", options->cache, "Where trained networks are kept; default results/cache").Path();
   return {parser, [options] { return Replay(*options); }};
 }
 

@@ -30,10 +30,10 @@ struct DirOptions {
   bool json = false;
 };
 
-std::shared_ptr<DirOptions> AddDirOptions(CLI::App& parser) {
+std::shared_ptr<DirOptions> AddDirOptions(CommandLine& parser) {
   auto options = std::make_shared<DirOptions>();
-  parser.add_option("DIR", options->dir, "Run directory")->required();
-  parser.add_flag("--json", options->json, "Print JSON");
+  parser.Option("DIR", options->dir, "Run directory").Required();
+  parser.Flag("--json", options->json, "Print JSON");
   return options;
 }
 
@@ -83,22 +83,21 @@ void PrintStatus(ResultReader& reader, const Check& check) {
 
 }  // namespace
 
-Command AddStatus(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
+Command AddStatus(Program& program) {
+  CommandLine parser = program.AddCommand(
       "status",
       "Done, failed and missing missions of a run, while it runs or after; exit 1 where any is damaged");
-  const auto options = AddDirOptions(*parser);
+  const auto options = AddDirOptions(parser);
   auto watch = std::make_shared<WatchOptions>();
-  parser->add_flag("--watch", watch->terminal,
-                   "Shows rates, the expected end and intervals until nothing is missing");
+  parser.Flag("--watch", watch->terminal,
+              "Shows rates, the expected end and intervals until nothing is missing");
   parser
-      ->add_option("--html", watch->html,
-                   "Keeps writing a page that shows itself anew, until nothing is missing")
-      ->check(NotEmpty());
-  parser->add_option("--every", watch->seconds, "Seconds between two looks of --watch and --html; default 5")
-      ->check(CLI::Range(1, 3600));
+      .Option("--html", watch->html, "Keeps writing a page that shows itself anew, until nothing is missing")
+      .Path();
+  parser.Option("--every", watch->seconds, "Seconds between two looks of --watch and --html; default 5")
+      .Range(1, 3600);
   auto stage = std::make_shared<std::string>();
-  parser->add_option(
+  parser.Option(
       "--stage", *stage,
       "Whether this stage is finished: exit 0; 3 when missions failed or are missing; 75 when a stage "
       "with a precision is due another round");
@@ -156,31 +155,30 @@ int MakeReportOf(const ReportOptions& options) {
 
 }  // namespace
 
-Command AddReport(CLI::App& program) {
+Command AddReport(Program& program) {
   auto options = std::make_shared<ReportOptions>();
-  CLI::App* parser = program.add_subcommand(
+  CommandLine parser = program.AddCommand(
       "report", "Tables, figures and index.html of a run beside the paper's values, written to DIR/report");
-  parser->add_option("DIR", options->dir, "Run directory")->required();
-  parser->add_option("--out", options->out, "Folder to write to; default DIR/report")->check(NotEmpty());
-  parser->add_flag("--force", options->force, "Write into a folder that is neither empty nor a report, too");
-  parser->add_flag("--no-figures", options->no_figures,
-                   "Draw nothing (no Python); the figures' data are still written");
-  parser->add_flag("--no-missions", options->no_missions,
-                   "Fly no missions again to be watched; a few are otherwise, into DIR/report/missions");
-  parser->add_option("--cache", options->cache, "Where trained networks are kept; default results/cache")
-      ->check(NotEmpty());
-  parser->add_flag("--json", options->json, "Print JSON");
-  parser->footer(
+  parser.Option("DIR", options->dir, "Run directory").Required();
+  parser.Option("--out", options->out, "Folder to write to; default DIR/report").Path();
+  parser.Flag("--force", options->force, "Write into a folder that is neither empty nor a report, too");
+  parser.Flag("--no-figures", options->no_figures,
+              "Draw nothing (no Python); the figures' data are still written");
+  parser.Flag("--no-missions", options->no_missions,
+              "Fly no missions again to be watched; a few are otherwise, into DIR/report/missions");
+  parser.Option("--cache", options->cache, "Where trained networks are kept; default results/cache").Path();
+  parser.Flag("--json", options->json, "Print JSON");
+  parser.Footer(
       "Figures are drawn by scripts/plot.py, found in the source tree that this program was built from or in "
       "$ED3R_SCRIPTS, with /usr/bin/python3 or $ED3R_PYTHON, which needs matplotlib. Without them all else "
       "is written.");
   return {parser, [options] { return MakeReportOf(*options); }};
 }
 
-Command AddDigest(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "digest", "One SHA-256 over all stored results, the same however they were flown");
-  const auto options = AddDirOptions(*parser);
+Command AddDigest(Program& program) {
+  CommandLine parser =
+      program.AddCommand("digest", "One SHA-256 over all stored results, the same however they were flown");
+  const auto options = AddDirOptions(parser);
   return {parser, [options] {
             ResultReader reader(options->dir);
             const std::string digest = DigestOf(reader);
@@ -192,16 +190,16 @@ Command AddDigest(CLI::App& program) {
           }};
 }
 
-Command AddMerge(CLI::App& program) {
+Command AddMerge(Program& program) {
   struct Options {
     std::string out;
     std::vector<std::string> dirs;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* parser =
-      program.add_subcommand("merge", "Joins shards into one run directory; refuses conflicting records");
-  parser->add_option("OUT", options->out, "Run directory to make or to add to")->required();
-  parser->add_option("DIR", options->dirs, "Run directories to join")->required();
+  CommandLine parser =
+      program.AddCommand("merge", "Joins shards into one run directory; refuses conflicting records");
+  parser.Option("OUT", options->out, "Run directory to make or to add to").Required();
+  parser.Option("DIR", options->dirs, "Run directories to join").Required();
   return {parser, [options] {
             const MergeSummary summary = MergeStores(options->out, options->dirs);
             fmt::print("{}: {} missions added, {} were there already, {} failed\n", options->out,

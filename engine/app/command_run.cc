@@ -144,36 +144,34 @@ int Run(const Options& options) {
 
 }  // namespace
 
-Command AddRun(CLI::App& program) {
+Command AddRun(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand(
+  CommandLine parser = program.AddCommand(
       "run", "Flies a sweep and prints its table; the same command again continues where it stopped");
-  options->sweep.AddTo(*parser);
-  parser->add_option("--out", options->out, "Run directory; default results/runs/<sweep name>")
-      ->check(NotEmpty());
-  parser->add_option("--stage", options->stage, "Fly or train this stage alone")->check(NotEmpty());
+  options->sweep.AddTo(parser);
+  parser.Option("--out", options->out, "Run directory; default results/runs/<sweep name>").Path();
+  parser.Option("--stage", options->stage, "Fly or train this stage alone").Path();
   parser
-      ->add_option("--from", options->from,
-                   "Run directory, only read, that holds the missions and networks that --stage builds on; "
-                   "default --out")
-      ->check(NotEmpty())
-      ->needs("--stage");
+      .Option("--from", options->from,
+              "Run directory, only read, that holds the missions and networks that --stage builds on; "
+              "default --out")
+      .Path()
+      .Needs("--stage");
   parser
-      ->add_option("--cache", options->cache,
-                   "Where trained networks are kept for all sweeps; default results/cache")
-      ->check(NotEmpty());
-  parser->add_option("--threads", options->threads, "Threads; 0, the default: all processors");
-  parser->add_option("--shard", options->shard,
-                     "I/N: fly one of N parts, e.g. 1/4, counted from 1 to N or from 0 to N-1 (0/N is N/N); "
-                     "'ed3r merge' joins them");
-  parser->add_flag("--repair", options->repair,
-                   "Delete stored missions that are damaged ('ed3r verify' names them) and fly them again");
-  parser->add_flag(
-      "--only-failed", options->only_failed,
-      "Fly the missions that have failed again ('ed3r status' tells why), and none that are missing");
-  parser->add_flag("--accept-mixed", options->accept_mixed,
-                   "Continue a run that other code has begun; its report says so");
-  parser->add_flag("--quiet", options->quiet, "Neither progress nor table");
+      .Option("--cache", options->cache,
+              "Where trained networks are kept for all sweeps; default results/cache")
+      .Path();
+  parser.Option("--threads", options->threads, "Threads; 0, the default: all processors");
+  parser.Option("--shard", options->shard,
+                "I/N: fly one of N parts, e.g. 1/4, counted from 1 to N or from 0 to N-1 (0/N is N/N); "
+                "'ed3r merge' joins them");
+  parser.Flag("--repair", options->repair,
+              "Delete stored missions that are damaged ('ed3r verify' names them) and fly them again");
+  parser.Flag("--only-failed", options->only_failed,
+              "Fly the missions that have failed again ('ed3r status' tells why), and none that are missing");
+  parser.Flag("--accept-mixed", options->accept_mixed,
+              "Continue a run that other code has begun; its report says so");
+  parser.Flag("--quiet", options->quiet, "Neither progress nor table");
   return {parser, [options] { return Run(*options); }};
 }
 

@@ -177,38 +177,33 @@ int Run(const Options& options) {
 
 }  // namespace
 
-Command AddSlurm(CLI::App& program) {
+Command AddSlurm(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand(
+  CommandLine parser = program.AddCommand(
       "slurm", "Writes a sweep as batch scripts for Slurm, to be read, edited and submitted: RUN/slurm");
-  options->sweep.AddTo(*parser);
+  options->sweep.AddTo(parser);
   parser
-      ->add_option("--out", options->out,
-                   "Run directory, on a disk that all nodes share; default results/runs/<sweep name>")
-      ->check(NotEmpty());
+      .Option("--out", options->out,
+              "Run directory, on a disk that all nodes share; default results/runs/<sweep name>")
+      .Path();
+  parser.Option("--cache", options->cache, "Where trained networks are kept, likewise; default results/cache")
+      .Path();
+  parser.Option("--shards", options->shards, "Tasks of a stage's flights; default 16").Range(1, kMaxShards);
+  parser.Option("--cpus-per-task", options->cpus, "Threads of a task; default 1").Range(1, 4096);
+  parser.Option("--time", options->time, "Time limit of a task, as sbatch takes it; default: the site's");
+  parser.Option("--partition", options->partition, "Partition; default: the site's");
+  parser.Option("--account", options->account, "Account; default: the site's");
   parser
-      ->add_option("--cache", options->cache,
-                   "Where trained networks are kept, likewise; default results/cache")
-      ->check(NotEmpty());
-  parser->add_option("--shards", options->shards, "Tasks of a stage's flights; default 16")
-      ->check(CLI::Range(std::int64_t{1}, kMaxShards));
-  parser->add_option("--cpus-per-task", options->cpus, "Threads of a task; default 1")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{4096}));
-  parser->add_option("--time", options->time,
-                     "Time limit of a task, as sbatch takes it; default: the site's");
-  parser->add_option("--partition", options->partition, "Partition; default: the site's");
-  parser->add_option("--account", options->account, "Account; default: the site's");
-  parser
-      ->add_option("--array-limit", options->array_limit,
-                   "Tasks of one job array at most (the site's MaxArraySize less one); default 1000")
-      ->check(CLI::Range(std::int64_t{1}, kMaxShards));
-  parser->add_option("--scratch", options->scratch,
-                     "Fly on a disk of the node's own, such as '$TMPDIR', and move the store at the end");
-  parser->add_flag("--submit", options->submit, "Submit them");
-  parser->add_flag(
+      .Option("--array-limit", options->array_limit,
+              "Tasks of one job array at most (the site's MaxArraySize less one); default 1000")
+      .Range(1, kMaxShards);
+  parser.Option("--scratch", options->scratch,
+                "Fly on a disk of the node's own, such as '$TMPDIR', and move the store at the end");
+  parser.Flag("--submit", options->submit, "Submit them");
+  parser.Flag(
       "--missing", options->missing,
       "Say which tasks are still owed by what is stored; with --submit, submit just those and what follows");
-  parser->add_flag("--force", options->force, "Write over scripts that have been edited");
+  parser.Flag("--force", options->force, "Write over scripts that have been edited");
   return {parser, [options] { return Run(*options); }};
 }
 

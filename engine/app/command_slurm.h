@@ -5,6 +5,6 @@
 
 namespace ed3r {
 
-Command AddSlurm(CLI::App& program);
+Command AddSlurm(Program& program);
 
 }  // namespace ed3r

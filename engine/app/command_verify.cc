@@ -100,31 +100,31 @@ int PrintDifference(const RunDifference& difference, bool json) {
 
 }  // namespace
 
-Command AddVerify(CLI::App& program) {
+Command AddVerify(Program& program) {
   struct Options {
     std::string dir;
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand(
+  CommandLine parser = program.AddCommand(
       "verify",
       "Compares everything stored with its checksums and names what is damaged; exit 1 where anything is");
-  parser->add_option("DIR", options->dir, "Run directory")->required();
-  parser->add_flag("--json", options->json, "Print JSON");
+  parser.Option("DIR", options->dir, "Run directory").Required();
+  parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] { return PrintVerification(options->dir, Verify(options->dir), options->json); }};
 }
 
-Command AddDiff(CLI::App& program) {
+Command AddDiff(Program& program) {
   struct Options {
     std::string a, b;
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand(
+  CommandLine parser = program.AddCommand(
       "diff", "The first mission, timestep and quantity in which two runs differ; exit 1 where they do");
-  parser->add_option("A", options->a, "Run directory")->required();
-  parser->add_option("B", options->b, "Run directory")->required();
-  parser->add_flag("--json", options->json, "Print JSON");
+  parser.Option("A", options->a, "Run directory").Required();
+  parser.Option("B", options->b, "Run directory").Required();
+  parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
             ResultReader a(options->a), b(options->b);
             const RunDifference difference = DiffRuns(a, b);

@@ -115,15 +115,14 @@ Json JsonOf(const Scene& scene, const WorldMeasures& measures) {
 
 }  // namespace
 
-Command AddWorld(CLI::App& program) {
+Command AddWorld(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* parser = program.add_subcommand(
+  CommandLine parser = program.AddCommand(
       "world", "Builds a world file, says what is in it, measures its sites and draws its map");
-  parser->add_option("FILE", options->file, "World file (YAML)")->required();
-  parser
-      ->add_option("--picture", options->picture, "Draw the map (relief, trees, sites, stations) to this PNG")
-      ->check(NotEmpty());
-  parser->add_flag("--json", options->json, "Print JSON");
+  parser.Option("FILE", options->file, "World file (YAML)").Required();
+  parser.Option("--picture", options->picture, "Draw the map (relief, trees, sites, stations) to this PNG")
+      .Path();
+  parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
             const std::shared_ptr<const Scene> scene = Scene::Load(options->file);
             const WorldMeasures measures = MeasureWorld(*scene);

@@ -3,46 +3,38 @@
 // system's signal, 130 interrupted.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
-#include <string>
-#include <vector>
+
+#include "engine/app/command_line.h"
 
 namespace ed3r {
 
 using CommandRun = std::function<int()>;
 
 struct Command {
-  CLI::App* parser = nullptr;
+  CommandLine parser;
   CommandRun run;
 };
 
-Command AddRun(CLI::App& program);
-Command AddPlan(CLI::App& program);
-Command AddStatus(CLI::App& program);
-Command AddReport(CLI::App& program);
-Command AddCompare(CLI::App& program);
-Command AddDigest(CLI::App& program);
-Command AddMerge(CLI::App& program);
-Command AddExport(CLI::App& program);
-Command AddVerify(CLI::App& program);
-Command AddDiff(CLI::App& program);
-Command AddReplay(CLI::App& program);
-Command AddExplain(CLI::App& program);
-Command AddDetect(CLI::App& program);
-Command AddFit(CLI::App& program);
-Command AddParams(CLI::App& program);
-Command AddPhysics(CLI::App& program);
-Command AddWorld(CLI::App& program);
-Command AddFrames(CLI::App& program);
-Command AddDoctor(CLI::App& program);
-
-// For options that take a path: an empty one is a variable that was not set.
-inline CLI::Validator NotEmpty() {
-  return CLI::Validator(
-      [](std::string& text) { return std::string(text.empty() ? "'' is not allowed; allowed: a path" : ""); },
-      "");
-}
+Command AddRun(Program& program);
+Command AddPlan(Program& program);
+Command AddStatus(Program& program);
+Command AddReport(Program& program);
+Command AddCompare(Program& program);
+Command AddDigest(Program& program);
+Command AddMerge(Program& program);
+Command AddExport(Program& program);
+Command AddVerify(Program& program);
+Command AddDiff(Program& program);
+Command AddReplay(Program& program);
+Command AddExplain(Program& program);
+Command AddDetect(Program& program);
+Command AddFit(Program& program);
+Command AddParams(Program& program);
+Command AddPhysics(Program& program);
+Command AddWorld(Program& program);
+Command AddFrames(Program& program);
+Command AddDoctor(Program& program);
 
 constexpr int kDone = 0;
 constexpr int kFailedInside = 1;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -25,7 +26,8 @@
 namespace ed3r {
 namespace {
 
-std::vector<Command> AddCommands(CLI::App& program) {
+std::vector<Command> AddCommands(CLI::App& app) {
+  Program program(&app);
   return {AddRun(program),     AddPlan(program),    AddStatus(program), AddReport(program),
           AddCompare(program), AddDigest(program),  AddMerge(program),  AddSlurm(program),
           AddVerify(program),  AddDiff(program),    AddReplay(program), AddExplain(program),
@@ -69,7 +71,7 @@ int RunCommand(int argc, char** argv, CLI::App& program) {
     CheckArguments(argc, argv);
     program.parse(argc, argv);
     for (const Command& command : commands)
-      if (command.parser->parsed()) return command.run();
+      if (command.parser.Chosen()) return command.run();
     return kBadInput;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version

@@ -35,15 +35,14 @@ MissionsOverride ParseMissions(const std::string& text) {
 
 }  // namespace
 
-void SweepArguments::AddTo(CLI::App& parser) {
-  parser.add_option("SWEEP", file, "Sweep file (YAML)")->required();
-  parser.add_option("--set", set, "KEY=VALUE; wins over the file; 'ed3r params' lists the keys")
-      ->allow_extra_args(false);
-  parser.add_option("--seed", seed, "Seed in place of the file's");
+void SweepArguments::AddTo(CommandLine& parser) {
+  parser.Option("SWEEP", file, "Sweep file (YAML)").Required();
+  parser.Option("--set", set, "KEY=VALUE; wins over the file; 'ed3r params' lists the keys").OneValue();
+  parser.Option("--seed", seed, "Seed in place of the file's");
   parser
-      .add_option("--missions", missions,
-                  "N or STAGE=N: missions per arm in place of the file's, in every stage or in one")
-      ->allow_extra_args(false);
+      .Option("--missions", missions,
+              "N or STAGE=N: missions per arm in place of the file's, in every stage or in one")
+      .OneValue();
 }
 
 SweepPlan SweepArguments::Load() const {

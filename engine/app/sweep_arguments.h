@@ -1,10 +1,10 @@
 // What commands that take a sweep have in common: the file, its overrides, where its results lie.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "engine/app/command_line.h"
 #include "engine/sweep/plan.h"
 
 namespace ed3r {
@@ -15,7 +15,7 @@ struct SweepArguments {
   std::string seed;                   // "" for the file's own
   std::vector<std::string> missions;  // "N" or "STAGE=N"; empty for the file's own
 
-  void AddTo(CLI::App& parser);
+  void AddTo(CommandLine& parser);
   SweepPlan Load() const;  // throws UserError
 };
 
