@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "engine/core/check.h"
-#include "engine/rfnn/protobuf.h"
+#include "engine/core/protobuf.h"
 
 namespace ed3r {
 namespace {

@@ -110,7 +110,7 @@ TEST(OnnxNetworkTest, WhatDoesNotFitIsRefusedByName) {
   graph = SmallGraph();
   graph.metadata["ed3r.scaling"] = "1 2 3";
   EXPECT_NE(RefusalOf(BytesOf(graph)).find("do not fit its tensors"), std::string::npos);
-  EXPECT_NE(RefusalOf("not a network").find("is no ONNX network"), std::string::npos);
+  EXPECT_NE(RefusalOf("not a network").find("is no ONNX model"), std::string::npos);
 }
 
 TEST(OnnxNetworkTest, EveryCutIsRefused) {

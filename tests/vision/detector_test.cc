@@ -215,7 +215,8 @@ TEST(OnnxDetector, RefusesWhatCannotWorkBeforeAnythingFlies) {
 
   DetectorConfig shape = OnnxConfig();
   shape.input_width_px = shape.input_height_px = 224;
-  ExpectRefusal(shape, {"red_minus_blue.onnx", "224 x 224", "input_width_px"});
+  ExpectRefusal(
+      shape, {"red_minus_blue.onnx", "takes frames of 96 x 54 pixels", "are 224 and 224", "input_width_px"});
 
   DetectorConfig index = OnnxConfig();
   index.output_index = 2;

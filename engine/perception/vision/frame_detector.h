@@ -12,15 +12,24 @@
 #include <string>
 
 #include "engine/config/detector.h"
+#include "engine/core/check.h"
 #include "engine/perception/image.h"
 
 namespace ed3r {
+
+// A network that fails on a frame, or whose answer is no confidence: not a number, or outside [0, 1]. what() is one line
+// that begins with the key and the path of the network. A mission that meets one has failed.
+class DetectorError : public UserError {
+ public:
+  using UserError::UserError;
+};
 
 class FrameDetector {
  public:
   virtual ~FrameDetector();
 
-  // One confidence in [0, 1] per frame; frames of another size than the network's are resized (resize.h).
+  // One confidence in [0, 1] per frame; frames of another size than the network's are resized (resize.h). Throws
+  // DetectorError.
   virtual void Confidences(const FrameStack& frames, std::span<double> confidences) const = 0;
 };
 
@@ -30,8 +39,8 @@ struct DetectorPair {
   std::string fingerprint;  // SHA-256 over both networks: part of what a result depends on
 };
 
-// Loads both and tries each on a blank frame. Throws UserError, one line with the key and the path, for a file that is
-// missing, is no network, or does not answer as the configuration says.
+// Loads both and tries each on blank frames. Throws UserError, one line with the key and the path, for a file that is
+// missing, is no network, declares another input or output than the configuration, or does not answer as it says.
 DetectorPair LoadDetectors(const DetectorConfig& config);
 
 }  // namespace ed3r

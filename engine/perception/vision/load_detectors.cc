@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/sha256.h"
@@ -7,6 +9,7 @@
 #include "engine/perception/vision/frame_detector.h"
 #include "engine/perception/vision/model_file.h"
 #include "engine/perception/vision/onnx_detector.h"
+#include "engine/perception/vision/onnx_external.h"
 
 namespace ed3r {
 namespace {
@@ -26,11 +29,16 @@ std::shared_ptr<const FrameDetector> Load(const std::string& key, const std::str
                                           Arithmetic arithmetic, const DetectorConfig& config,
                                           Sha256& fingerprint) {
   const bool builtin = name == kBuiltin;
-  const std::string bytes = builtin ? std::string(BuiltinDetectorBytes()) : ReadBytes(key, name);
+  std::string bytes = builtin ? std::string(BuiltinDetectorBytes()) : ReadBytes(key, name);
+  const bool ours = builtin || bytes.starts_with("ED3RCNN\n");
+  if (!ours) bytes = WithWeightsInside(std::move(bytes), name, fmt::format("{}: {}", key, name));
   fingerprint.Update(fmt::format("{} {}\n", key, bytes.size()));
   fingerprint.Update(bytes);
-  const bool ours = builtin || bytes.starts_with("ED3RCNN\n");
-  if (!ours) return MakeOnnxDetector(key, name, bytes, config);
+  if (!ours) {
+    fingerprint.Update(
+        fmt::format("{} {} {} {}\n", config.sd_red, config.sd_green, config.sd_blue, config.output_name));
+    return MakeOnnxDetector(key, name, std::move(bytes), config);
+  }
   auto model =
       std::make_shared<const DetectorModel>(ParseDetectorModel(bytes, fmt::format("{}: {}", key, name)));
   if (arithmetic == Arithmetic::kInteger && model->quantization.empty())

@@ -9,9 +9,10 @@
 
 namespace ed3r {
 
-// `key` stands in messages (perception.detector.full); `bytes` is the model file, `path` its name. Sets OpenCV's
-// threads to one for the whole process. Throws UserError for bytes that are no network that OpenCV can run, and for an
-// answer that is not what the configuration says.
+// `key` stands in messages (perception.detector.full); `bytes` is the model, its weights inside, `path` its name. Sets
+// OpenCV's threads to one and silences it, for the whole process. Throws UserError for bytes that are no network that
+// OpenCV can run, for a model that declares another input or output than the configuration, and for an answer that is not
+// what the configuration says.
 std::shared_ptr<const FrameDetector> MakeOnnxDetector(const std::string& key, const std::string& path,
                                                       std::string bytes, const DetectorConfig& config);
 

@@ -1,4 +1,4 @@
-#include "engine/rfnn/protobuf.h"
+#include "engine/core/protobuf.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@ namespace ed3r {
 namespace {
 
 std::string_view Take(std::string_view& bytes, std::uint64_t size, const std::string& name) {
-  if (size > bytes.size()) throw UserError(fmt::format("{}: is no ONNX network, or is cut short", name));
+  if (size > bytes.size()) throw UserError(fmt::format("{}: is no ONNX model, or is cut short", name));
   const std::string_view taken = bytes.substr(0, size);
   bytes.remove_prefix(size);
   return taken;
@@ -26,13 +26,14 @@ std::uint64_t TakeVarint(std::string_view& bytes, const std::string& name) {
     value |= static_cast<std::uint64_t>(byte & 0x7fU) << shift;
     if (byte < 0x80) return value;
   }
-  throw UserError(fmt::format("{}: is no ONNX network: a number does not end", name));
+  throw UserError(fmt::format("{}: is no ONNX model: a number does not end", name));
 }
 
 void ForEachField(std::string_view message, const std::string& name,
                   const std::function<void(const ProtobufField&)>& visit) {
   using Wire = ProtobufField::Wire;
   while (!message.empty()) {
+    const std::string_view begin = message;
     const std::uint64_t key = TakeVarint(message, name);
     ProtobufField field;
     field.number = static_cast<std::uint32_t>(std::min<std::uint64_t>(key >> 3, UINT32_MAX));
@@ -53,8 +54,9 @@ void ForEachField(std::string_view message, const std::string& name,
         field.bytes = Take(message, 4, name);
         break;
       default:
-        throw UserError(fmt::format("{}: is no ONNX network: a field of unknown kind", name));
+        throw UserError(fmt::format("{}: is no ONNX model: a field of unknown kind", name));
     }
+    field.whole = begin.substr(0, begin.size() - message.size());
     visit(field);
   }
 }
@@ -81,6 +83,11 @@ ProtobufWriter& ProtobufWriter::Bytes(std::uint32_t field, std::string_view valu
   Varint(std::uint64_t{field} << 3 | 2);
   Varint(value.size());
   bytes_ += value;
+  return *this;
+}
+
+ProtobufWriter& ProtobufWriter::Copy(const ProtobufField& field) {
+  bytes_ += field.whole;
   return *this;
 }
 

@@ -1,4 +1,5 @@
-// The wire format of protocol buffers, as far as ONNX files need it.
+// The wire format of protocol buffers, as far as ONNX files need it: what the readers of policies (engine/rfnn) and of
+// detectors (engine/perception/vision) walk.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,7 @@ struct ProtobufField {
   Wire wire = Wire::kNumber;
   std::uint64_t value = 0;  // of a number
   std::string_view bytes;   // of anything else; inside the message
+  std::string_view whole;   // with its key, as it stands in the message
 
   bool IsBytes() const { return wire == Wire::kBytes; }
 };
@@ -32,6 +34,7 @@ class ProtobufWriter {
   ProtobufWriter& Number(std::uint32_t field, std::uint64_t value);
   ProtobufWriter& Float(std::uint32_t field, float value);
   ProtobufWriter& Bytes(std::uint32_t field, std::string_view value);  // texts and messages
+  ProtobufWriter& Copy(const ProtobufField& field);                    // as it was read
 
   const std::string& bytes() const { return bytes_; }
 

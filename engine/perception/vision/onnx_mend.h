@@ -1,0 +1,21 @@
+// Steps of ONNX models that OpenCV 4.6 reads otherwise than the standard says, put so that both agree, or refused.
+//
+//   Gemm          unless transB is 1 the weights are taken the wrong way round: an error for most, wrong numbers for square
+//                 ones; alpha and beta are not looked at
+//   AveragePool   whether padding counts goes by who made the file, not by count_include_pad
+//   LeakyRelu     without alpha the slope is 0, not 0.01
+//
+// tests/vision/operators_test.cc holds what detectors are made of against numbers worked out by hand.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ed3r {
+
+// The step as one or more nodes to stand in its place, in order. `producer` is the model's producer_name; `name` begins
+// messages. Throws UserError for forms that cannot be put so.
+std::vector<std::string> Mended(std::string_view node, std::string_view producer, const std::string& name);
+
+}  // namespace ed3r

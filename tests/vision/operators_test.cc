@@ -1,0 +1,219 @@
+// What detectors are made of, through OpenCV's reader, against numbers worked out by hand: where it reads a step otherwise
+// than the ONNX standard says, the answer must be the standard's or a refusal that names the step.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "engine/core/check.h"
+#include "engine/perception/vision/frame_detector.h"
+#include "tests/vision/onnx_writer.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+using test::OnnxAttribute;
+using test::OnnxWriter;
+using Ints = std::vector<std::int64_t>;
+
+// An 8 x 8 frame whose pixel (x, y) is (16 + x, 100 + 2 y, 3 x): over 256, exact in single precision.
+FrameStack Pattern() {
+  FrameStack frame{.frames = 1, .width_px = 8, .height_px = 8, .rgb = {}};
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      for (const int colour : {16 + x, 100 + 2 * y, 3 * x})
+        frame.rgb.push_back(static_cast<std::uint8_t>(colour));
+  return frame;
+}
+
+class Operators : public testing::Test {
+ protected:
+  Operators()
+      : file_(fs::temp_directory_path() / ("ed3r-operators-" + std::to_string(::getpid()) + ".onnx")) {
+    model_.Input("frame", {1, 3, 8, 8}).Output("y", {test::kOpen, test::kOpen});
+    config_.full = file_.string();
+    config_.scale = 1.0 / 256.0;
+    config_.output = DetectorOutput::kSigmoid;
+    config_.input_width_px = config_.input_height_px = 8;
+  }
+  ~Operators() override { fs::remove(file_); }
+
+  // The logit that value `index` of the output 'y' is.
+  double Value(int index) {
+    std::ofstream(file_, std::ios::binary) << model_.Bytes();
+    config_.output_index = index;
+    double confidence = -1.0;
+    LoadDetectors(config_).full->Confidences(Pattern(), std::span(&confidence, 1));
+    return std::log(confidence / (1.0 - confidence));
+  }
+
+  void Expect(const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      EXPECT_NEAR(Value(static_cast<int>(i)), values[i], 2e-6) << i;
+  }
+
+  void ExpectRefusal(const std::string& part) {
+    try {
+      const double value = Value(0);
+      ADD_FAILURE() << "gives " << value;
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+
+  // 'flat' [1, 3]: the means of the channels: 19.5, 107 and 10.5 of 256.
+  OnnxWriter& Means() {
+    return model_.Step("GlobalAveragePool", {"frame"}, {"means"})
+        .Step("Flatten", {"means"}, {"flat"}, {{"axis", std::int64_t{1}}});
+  }
+
+  const double red_ = 19.5 / 256, green_ = 107.0 / 256, blue_ = 10.5 / 256;
+  fs::path file_;
+  OnnxWriter model_;
+  DetectorConfig config_;
+};
+
+TEST_F(Operators, GemmOfASquareMatrixIsNotTurnedRound) {
+  Means().Weights("w", {3, 3}, {1, 2, 0, 0, 1, 0, 4, 0, 1}).Weights("b", {3}, {0, 0.5F, 0});
+  model_.Step("Gemm", {"flat", "w", "b"}, {"y"});
+  Expect({red_ + 4 * blue_, 2 * red_ + green_ + 0.5, blue_});
+}
+
+TEST_F(Operators, GemmWithTransBIsTakenAsItStands) {
+  Means().Weights("w", {2, 3}, {1, 2, 0, 0, 1, 4});
+  model_.Step("Gemm", {"flat", "w"}, {"y"}, {{"transB", std::int64_t{1}}});
+  Expect({red_ + 2 * green_, green_ + 4 * blue_});
+}
+
+TEST_F(Operators, GemmWithFactorsIsRefused) {
+  Means().Weights("w", {3, 3}, {1, 0, 0, 0, 1, 0, 0, 0, 1});
+  model_.Step("Gemm", {"flat", "w"}, {"y"}, {{"alpha", 0.5F}});
+  ExpectRefusal("operator Gemm (node 'the Gemm') has an alpha or a beta that is not 1");
+}
+
+TEST_F(Operators, MatMulAndAdd) {
+  Means().Weights("w", {3, 2}, {1, 2, 0, 1, 4, 0}).Weights("b", {2}, {0.25F, -0.5F});
+  model_.Step("MatMul", {"flat", "w"}, {"m"}).Step("Add", {"m", "b"}, {"y"});
+  Expect({red_ + 4 * blue_ + 0.25, 2 * red_ + green_ - 0.5});
+}
+
+TEST_F(Operators, ActivationsWithAndWithoutTheirAttributes) {
+  const auto through = [&](const std::string& op, const std::vector<OnnxAttribute>& attributes, double at,
+                           double expected) {
+    model_ = OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 3});
+    Means().Weights("shift", {3}, {static_cast<float>(at - red_), 0, 0});
+    model_.Step("Add", {"flat", "shift"}, {"x"}).Step(op, {"x"}, {"y"}, attributes);
+    EXPECT_NEAR(Value(0), expected, 2e-6) << op << " at " << at;
+  };
+  through("Relu", {}, -0.5, 0.0);
+  through("Relu", {}, 0.5, 0.5);
+  through("LeakyRelu", {}, -0.5, -0.005);
+  through("LeakyRelu", {{"alpha", 0.25F}}, -0.5, -0.125);
+  through("Elu", {}, -0.5, std::expm1(-0.5));
+  through("Elu", {{"alpha", 0.5F}}, -0.5, 0.5 * std::expm1(-0.5));
+  through("HardSigmoid", {}, 0.5, 0.6);
+  through("HardSigmoid", {{"alpha", 0.25F}, {"beta", 0.25F}}, 0.5, 0.375);
+  through("Selu", {}, -0.5, 1.0507009873554805 * 1.6732632423543772 * std::expm1(-0.5));
+  through("Tanh", {}, 0.5, std::tanh(0.5));
+  through("Softplus", {}, 0.5, std::log1p(std::exp(0.5)));
+  through("Sqrt", {}, 0.25, 0.5);
+  through("Exp", {}, 0.25, std::exp(0.25));
+  through("Neg", {}, 0.25, -0.25);
+}
+
+TEST_F(Operators, BatchNormalization) {
+  Means()
+      .Weights("gain", {3}, {2, 1, 4})
+      .Weights("bias", {3}, {0.5F, 0, -1})
+      .Weights("mean", {3}, {0.25F, 0, 0})
+      .Weights("var", {3}, {0.25F, 1, 4});
+  model_.Step("BatchNormalization", {"means", "gain", "bias", "mean", "var"}, {"n"})
+      .Step("Flatten", {"n"}, {"y"}, {{"axis", std::int64_t{1}}});
+  const auto expected = [](double x, double gain, double bias, double mean, double var) {
+    return gain * (x - mean) / std::sqrt(var + 1e-5) + bias;
+  };
+  Expect({expected(red_, 2, 0.5, 0.25, 0.25), expected(green_, 1, 0, 0, 1), expected(blue_, 4, -1, 0, 4)});
+}
+
+// Of red 16 + x: 2 x 2 windows in steps of 2 and one pixel of padding around.
+TEST_F(Operators, AveragesCountTheirPaddingAsTheModelSays) {
+  const auto pool = [&](bool counts, const std::string& producer) {
+    model_ = OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 75});
+    std::vector<OnnxAttribute> attributes = {
+        {"kernel_shape", Ints{2, 2}}, {"strides", Ints{2, 2}}, {"pads", Ints{1, 1, 1, 1}}};
+    if (counts) attributes.push_back({"count_include_pad", std::int64_t{1}});
+    model_.Producer(producer).Step("AveragePool", {"frame"}, {"p"}, attributes);
+    model_.Step("Flatten", {"p"}, {"y"}, {{"axis", std::int64_t{1}}});
+  };
+  pool(false, "tool");
+  Expect({16.0 / 256, 17.5 / 256});
+  pool(true, "pytorch");
+  Expect({16.0 / 4 / 256, 17.5 / 2 / 256});
+  pool(true, "tool");
+  ExpectRefusal("operator AveragePool (node 'the AveragePool') has count_include_pad = 1");
+  pool(false, "pytorch");
+  ExpectRefusal("has count_include_pad = 0, which OpenCV reads otherwise in a model of 'pytorch'");
+}
+
+TEST_F(Operators, WindowsThatDoNotFitAreCutOrCounted) {
+  const auto pool = [&](const std::vector<OnnxAttribute>& more) {
+    model_ = OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {test::kOpen, test::kOpen});
+    std::vector<OnnxAttribute> attributes = {{"kernel_shape", Ints{3, 3}}, {"strides", Ints{3, 3}}};
+    attributes.insert(attributes.end(), more.begin(), more.end());
+    model_.Step("MaxPool", {"frame"}, {"p"}, attributes);
+    model_.Step("Flatten", {"p"}, {"y"}, {{"axis", std::int64_t{1}}});
+  };
+  pool({});
+  Expect({18.0 / 256, 21.0 / 256, 18.0 / 256});
+  pool({{"ceil_mode", std::int64_t{1}}});
+  Expect({18.0 / 256, 21.0 / 256, 23.0 / 256, 18.0 / 256});
+}
+
+TEST_F(Operators, ConvolutionsWithPaddingStridesAndGroups) {
+  model_.Weights("k", {3, 1, 2, 2}, {1, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1}).Weights("b", {3}, {0.5F, 0, 0});
+  model_.Step("Conv", {"frame", "k", "b"}, {"c"},
+              {{"kernel_shape", Ints{2, 2}},
+               {"strides", Ints{4, 4}},
+               {"pads", Ints{0, 1, 0, 0}},
+               {"group", std::int64_t{3}}});
+  model_.Step("Flatten", {"c"}, {"y"}, {{"axis", std::int64_t{1}}});
+  // Columns -1 and 3 of the left corners, rows 0 and 4.
+  Expect({0.5, 0.5 + 19.0 / 256, 0.5, 0.5 + 19.0 / 256, 102.0 / 256, 102.0 / 256});
+}
+
+TEST_F(Operators, SoftmaxOverTheChannelsOfAVector) {
+  config_.output = DetectorOutput::kProbability;
+  Means().Step("Softmax", {"flat"}, {"y"});
+  std::ofstream(file_, std::ios::binary) << model_.Bytes();
+  double confidence = -1.0;
+  LoadDetectors(config_).full->Confidences(Pattern(), std::span(&confidence, 1));
+  EXPECT_NEAR(confidence, std::exp(red_) / (std::exp(red_) + std::exp(green_) + std::exp(blue_)), 1e-6);
+}
+
+TEST_F(Operators, ReductionsKeepOrDropTheirSides) {
+  for (const std::int64_t keep : {0, 1}) {
+    model_ = OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 3});
+    model_.Step("ReduceMean", {"frame"}, {"m"}, {{"axes", Ints{2, 3}}, {"keepdims", keep}});
+    model_.Step("Flatten", {"m"}, {"y"}, {{"axis", std::int64_t{1}}});
+    Expect({red_, green_, blue_});
+  }
+}
+
+TEST_F(Operators, PartsAreJoinedAndScaled) {
+  Means().Weights("half", {1}, {0.5F});
+  model_.Step("Mul", {"flat", "half"}, {"h"})
+      .Step("Concat", {"h", "flat"}, {"y"}, {{"axis", std::int64_t{1}}});
+  Expect({red_ / 2, green_ / 2, blue_ / 2, red_, green_, blue_});
+}
+
+TEST_F(Operators, DifferencesAndQuotientsKeepTheirOrder) {
+  Means().Weights("c", {3}, {0.5F, 0.25F, 2}).Step("Sub", {"c", "flat"}, {"s"});
+  model_.Step("Div", {"s", "c"}, {"y"});
+  Expect({(0.5 - red_) / 0.5, (0.25 - green_) / 0.25, (2 - blue_) / 2});
+}
+
+}  // namespace
+}  // namespace ed3r
