@@ -114,6 +114,7 @@ class Stages {
     RemoveLeftovers(options.dir);
     RemoveLeftovers(options.cache_dir);
     LookForDamage();
+    summary_.grown = store_->Grown();
     summary_.stored_before = static_cast<std::int64_t>(store_->Stored().size());
   }
 

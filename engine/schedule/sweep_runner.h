@@ -52,6 +52,7 @@ struct SweepOptions {
 
 struct SweepSummary {
   RunSummary flown;                      // of this session
+  std::string grown;                     // what the plan has got since the run was begun; "" where nothing
   std::int64_t stored_before = 0;        // missions that were there already
   std::vector<DamagedMission> repaired;  // taken out to be flown again
   std::vector<ShelvedNetwork> networks;  // trained or found

@@ -142,10 +142,10 @@ FileKind CheckFile(Connection& database, FileUse use) {
   return FileKind::kStore;
 }
 
-void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& layout) {
-  database.Execute(TableDefinitions());
-  database.Execute(ViewDefinition<MissionRecord>("missions") + ViewDefinition<TimestepRecord>("timesteps"));
-  CreateMissionsIndex(database);
+namespace {
+
+// Into tables that are empty.
+void PutRecipe(Connection& database, const Recipe& recipe, const RunLayout& layout) {
   Statement put(database, "INSERT INTO recipe VALUES (?, ?)");
   put.Run("sweep", layout.name);
   put.Run("seed", std::to_string(layout.seed));
@@ -173,8 +173,25 @@ void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& l
                   stage.arms[a].first_scenario);
   }
   AddCode(database, recipe.code);
+}
+
+}  // namespace
+
+void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& layout) {
+  database.Execute(TableDefinitions());
+  database.Execute(ViewDefinition<MissionRecord>("missions") + ViewDefinition<TimestepRecord>("timesteps"));
+  CreateMissionsIndex(database);
+  PutRecipe(database, recipe, layout);
   database.Execute(
       fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kSchemaVersion));
+}
+
+void ReplaceRecipe(Connection& database, const Recipe& recipe, const RunLayout& layout) {
+  database.Execute(
+      "DELETE FROM recipe; DELETE FROM inputs; DELETE FROM places; DELETE FROM files; DELETE FROM stages; "
+      "DELETE "
+      "FROM runs");
+  PutRecipe(database, recipe, layout);
 }
 
 void AddFailureKind(Connection& database) {

@@ -51,6 +51,10 @@ FileKind CheckFile(Connection& database, FileUse use);
 // Creates the tables and writes the recipe. Call it in a transaction.
 void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& layout);
 
+// Writes another recipe and layout in place of those that the file has; the code of both counts. What is stored must fit
+// it (growth.h). Call it in a transaction.
+void ReplaceRecipe(Connection& database, const Recipe& recipe, const RunLayout& layout);
+
 // Adds the column that a file of format 2 may lack. Call it in a transaction.
 void AddFailureKind(Connection& database);
 

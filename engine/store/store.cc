@@ -49,6 +49,8 @@ class SqliteStore final : public ResultStore {
 
   const RunLayout& Layout() const override { return layout_; }
 
+  std::string Grown() const override { return file_.grown(); }
+
   std::vector<RunId> Stored() const override { return ReadStored(file_.database(), layout_); }
 
   void Put(const RunId& id, const MissionRecord& record, double wall_s) override {

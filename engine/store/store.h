@@ -21,7 +21,8 @@ namespace ed3r {
 
 class ResultStore {
  public:
-  // Makes DIR and the file when missing, continues it when there; begins a session with recipe.notes.
+  // Makes DIR and the file when missing, continues it when there; begins a session with recipe.notes. A plan that asks for
+  // more missions or arms than the file's, and leaves those there as they are, takes its place (growth.h).
   static std::unique_ptr<ResultStore> Open(const std::string& dir, const Recipe& recipe,
                                            const RunLayout& layout,
                                            OtherCode other_code = OtherCode::kRefuse);
@@ -30,6 +31,9 @@ class ResultStore {
   virtual ~ResultStore() = default;
 
   virtual const RunLayout& Layout() const = 0;
+
+  // What the plan has got since the last session: "stage online: 20 missions per arm for 10"; "" where it is the same.
+  virtual std::string Grown() const = 0;
 
   // Finished missions in plan order. Failed ones are not among them: they are flown again. UserError when one is not in
   // the plan.

@@ -8,6 +8,7 @@
 
 #include "engine/core/check.h"
 #include "engine/store/file_system.h"
+#include "engine/store/growth.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
 #include "engine/store/sqlite_errors.h"
@@ -50,20 +51,31 @@ std::string Holder(const std::string& dir) {
                   dir, owner, (fs::path(dir) / kOwnerFile).string()));
 }
 
-void CheckSameRun(Connection& database, const std::string& dir, const Recipe& recipe, const RunLayout& layout,
-                  OtherCode other_code) {
+// What the file's own arms were flown by: more arms may need more code.
+CodeIdentities CodeOfBoth(const CodeIdentities& there, CodeIdentities here) {
+  std::erase_if(here, [&](const auto& entry) { return !there.contains(entry.first); });
+  return here;
+}
+
+// "" where the recipes are the same, or how this one grows what is there.
+std::string CheckSameRun(Connection& database, const std::string& dir, const Recipe& recipe,
+                         const RunLayout& layout, OtherCode other_code) {
   const Recipe there = ReadRecipe(database);
-  if (const auto difference = Difference(there, recipe))
+  const bool same_plan = there.plan_text == recipe.plan_text;
+  const Growth growth = same_plan ? Growth{Difference(there, recipe).value_or(""), ""}
+                                  : GrowthOf(there, recipe, LearnedStages(database, ReadLayout(database)));
+  if (!growth.Allowed())
     throw UserError(
-        fmt::format("{}: holds results of another recipe: {}; give another --out", dir, *difference));
-  const auto code = CodeDifference(there.code, recipe.code);
+        fmt::format("{}: holds results of another recipe: {}; give another --out", dir, growth.difference));
+  const auto code = CodeDifference(there.code, same_plan ? recipe.code : CodeOfBoth(there.code, recipe.code));
   if (code && other_code == OtherCode::kRefuse)
     throw UserError(
         fmt::format("{}: holds results of another recipe: {}; give another --out, or --accept-mixed to "
                     "continue it with other code",
                     dir, *code));
-  if (!ReadLayout(database).SameMissions(layout))
+  if (same_plan && !ReadLayout(database).SameMissions(layout))
     throw UserError(fmt::format("{}: holds results of other stages, arms or seed; give another --out", dir));
+  return growth.what;
 }
 
 }  // namespace
@@ -129,12 +141,17 @@ void StoreFile::SetJournal(bool empty) {
 void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code) {
   Connect();
   const bool empty = CheckFile(*database_, FileUse::kWrite) == FileKind::kEmpty;
-  if (!empty) CheckSameRun(*database_, dir_, recipe, layout, other_code);
+  if (!empty) grown_ = CheckSameRun(*database_, dir_, recipe, layout, other_code);
   SetJournal(empty);  // only now: a refused file stays as it was
   database_->Execute(fmt::format("PRAGMA cache_size = -{}", kCacheKib));
   database_->Execute("PRAGMA secure_delete = OFF");  // Debian's default wipes freed space
   Transaction transaction(*database_, Transaction::Kind::kWrite);
-  empty ? CreateTables(*database_, recipe, layout) : AddCode(*database_, recipe.code);
+  if (empty)
+    CreateTables(*database_, recipe, layout);
+  else if (grown_.empty())
+    AddCode(*database_, recipe.code);
+  else
+    Grow(*database_, recipe, layout);
   AddFailureKind(*database_);
   CreateMissionsIndex(*database_);
   transaction.Commit();

@@ -21,7 +21,8 @@ class StoreFile {
  public:
   // Makes DIR and the file when missing. UserError, and nothing changed, when the file holds the results of
   // another recipe or layout, is not a store, or has another writer; results of other code are taken on and their
-  // recipe then names both where `other_code` accepts it.
+  // recipe then names both where `other_code` accepts it. A recipe that asks for more of the same grows the file
+  // (growth.h).
   StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout,
             OtherCode other_code = OtherCode::kRefuse);
   ~StoreFile();
@@ -30,6 +31,8 @@ class StoreFile {
 
   Connection& database() { return *database_; }
   bool created() const { return created_; }
+  // What the plan has got since the file was written last; "" where it is the same.
+  const std::string& grown() const { return grown_; }
 
   // StoreError once another writer has taken the directory over, which it does only when this one seemed dead.
   void CheckOwned() const;
@@ -47,6 +50,7 @@ class StoreFile {
   std::string dir_;
   bool created_dir_ = false;
   bool created_ = false;
+  std::string grown_;
   bool rollback_journal_ = false;
   // One of the two is held; both outlive the connection.
   std::unique_ptr<DirectoryLock> lock_;

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <initializer_list>
 
+#include "engine/sweep/arm_id.h"
+
 namespace ed3r {
 namespace {
 
@@ -27,11 +29,11 @@ std::string StrategyName(const Config& config) {
   return fmt::format("ed3r-{:.10g}", 100.0 * config.agents.eta_min);
 }
 
-// A value as it stands in a name, where '@' sets off the variant.
+// A value as it stands in a name, which has no mark of a variant.
 std::string ValueInName(const Setting& setting) {
   if (!NamesAFile(setting.key)) return setting.canonical;
   std::string stem = std::filesystem::path(setting.canonical).stem().string();
-  std::replace(stem.begin(), stem.end(), '@', '_');
+  std::replace(stem.begin(), stem.end(), ArmId::kMark, '_');
   return stem;
 }
 

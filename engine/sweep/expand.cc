@@ -10,6 +10,7 @@
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
 #include "engine/core/shipped.h"
+#include "engine/sweep/arm_id.h"
 #include "engine/sweep/arm_name.h"
 #include "engine/sweep/sweep_file.h"
 
@@ -119,7 +120,7 @@ class StageExpander {
     arm.name = ArmName(stage_, arm.config, {points.begin() + variant_axes_, points.end()}, axis_keys_);
     if (variant_axes_ > 0) {
       arm.variant = VariantName({points.begin(), points.begin() + variant_axes_}, axis_keys_);
-      arm.name = fmt::format("{}@{}", arm.name, arm.variant);
+      arm.name = ArmId{arm.name, arm.variant}.Text();
     }
     if (const std::string problem = CheckParameters(arm.config); !problem.empty())
       FailAt(PlaceOf(problem, points), fmt::format("{} (arm '{}')", problem, arm.name));

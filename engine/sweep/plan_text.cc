@@ -7,6 +7,7 @@
 
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
+#include "engine/sweep/arm_id.h"
 #include "engine/sweep/setting.h"
 
 namespace ed3r {
@@ -56,8 +57,7 @@ void ReadLine(const std::string& key, const std::string& value, WrittenPlan& pla
 Arm ArmOf(const WrittenPlan::Arm& written, const std::string& from) {
   Arm arm;
   arm.name = written.name;
-  // The variant is the end of the name (arm_name.h).
-  if (const auto at = arm.name.find('@'); at != std::string::npos) arm.variant = arm.name.substr(at + 1);
+  arm.variant = ArmId::Of(arm.name).variant;
   for (const auto& [key, value] : written.settings) {
     const std::string problem = SetParameter(arm.config, key, value);
     if (!problem.empty()) throw UserError(fmt::format("{}: arm {}: {}", from, arm.name, problem));

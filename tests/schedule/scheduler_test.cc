@@ -43,6 +43,7 @@ std::string WholeDigest() {
 class FakeStore final : public ResultStore {
  public:
   const RunLayout& Layout() const override { return layout_; }
+  std::string Grown() const override { return ""; }
   std::vector<RunId> Stored() const override { return {}; }
   void Put(const RunId& id, const MissionRecord&, double wall_s) override {
     std::this_thread::sleep_for(put_takes);

@@ -1,0 +1,239 @@
+// A run whose plan asks for more of the same goes on; one that asks for something else is refused and stays as it is.
+#include "engine/store/growth.h"
+
+#include "engine/config/parameters.h"
+#include "engine/store/merge.h"
+#include "tests/store/store_fixture.h"
+
+namespace ed3r {
+namespace {
+
+Arm ArmOf(const std::string& name, const std::string& strategy, double mass_kg = 1.8) {
+  Arm arm;
+  arm.name = name;
+  arm.config.mission.strategy = strategy;
+  arm.config.robot.mass_kg = mass_kg;
+  return arm;
+}
+
+// One stage, an axis of masses.
+SweepPlan Masses(const std::vector<double>& masses_kg, int missions) {
+  SweepPlan plan{.name = "masses",
+                 .question = "",
+                 .file = "",
+                 .seed = 7,
+                 .stages = {{.name = "online", .missions = missions}}};
+  for (const double mass_kg : masses_kg)
+    plan.stages[0].arms.push_back(ArmOf(fmt::format("rbs,mass_kg={}", mass_kg), "rbs", mass_kg));
+  return plan;
+}
+
+// Warm-up, training, online.
+SweepPlan Learning(const std::vector<std::string>& warmups, int warmup_missions, int online_missions) {
+  SweepPlan plan{.name = "learning", .question = "", .file = "", .seed = 7, .stages = {}};
+  plan.stages.push_back({.name = "warmup", .missions = warmup_missions});
+  for (const std::string& name : warmups) plan.stages[0].arms.push_back(ArmOf(name, "random"));
+  plan.stages.push_back({.name = "training",
+                         .kind = StageKind::kTrain,
+                         .after = {"warmup"},
+                         .arms = {ArmOf("training", "rbs")}});
+  plan.stages.push_back({.name = "online",
+                         .after = {"training"},
+                         .missions = online_missions,
+                         .arms = {ArmOf("ed3r-75", "ed3r")}});
+  return plan;
+}
+
+Recipe RecipeOf(const SweepPlan& plan) {
+  Recipe recipe = TestRecipe();
+  recipe.plan_text = plan.CanonicalText();
+  return recipe;
+}
+
+std::unique_ptr<ResultStore> Open(const std::string& dir, const SweepPlan& plan) {
+  return ResultStore::Open(dir, RecipeOf(plan), LayoutOf(plan));
+}
+
+// What an arm's mission leaves, wherever the arm stands in the plan.
+MissionRecord RecordOf(const SweepPlan& plan, const RunId& id) {
+  const Arm& arm = plan.stages[static_cast<std::size_t>(id.stage)].arms[static_cast<std::size_t>(id.arm)];
+  int key = 0;
+  for (const char c : arm.name) key = (31 * key + c) % 1009;
+  return TestRecord({id.stage, key, id.mission});
+}
+
+// Flies what is missing, of one part of `parts`.
+void Fly(const std::string& dir, const SweepPlan& plan, int part = 0, int parts = 1) {
+  const auto store = Open(dir, plan);
+  const std::vector<RunId> stored = store->Stored();
+  for (const RunId& id : AllMissions(LayoutOf(plan)))
+    if (LayoutOf(plan).LinearIndex(id) % parts == part &&
+        !std::binary_search(stored.begin(), stored.end(), id))
+      store->Put(id, RecordOf(plan, id), 0.25);
+  store->Commit();
+}
+
+void PutNetwork(const std::string& dir, const SweepPlan& plan, const std::string& sha256) {
+  Open(dir, plan)->PutNetworks(
+      {.files = {{sha256, {"a network", "bytes"}}}, .uses = {{2, 0, 0, "rc", sha256}}});
+}
+
+class GrowthTest : public ::testing::Test {
+ protected:
+  std::string Dir() const { return temp_ / "run"; }
+  std::string Fresh(const SweepPlan& plan) const {
+    Fly(temp_ / "fresh", plan);
+    return DigestOfDir(temp_ / "fresh");
+  }
+  // The error of opening it with this plan, which changes nothing.
+  std::string Refused(const SweepPlan& plan) const {
+    const std::string before = ReadPlan(), digest = DigestOfDir(Dir());
+    const std::string error = UserErrorOf([&] { Open(Dir(), plan); });
+    EXPECT_EQ(ReadPlan(), before);
+    EXPECT_EQ(DigestOfDir(Dir()), digest);
+    return error.substr(error.find(": holds ") + 2);
+  }
+  std::string ReadPlan() const { return ResultReader(Dir()).StoredRecipe().plan_text; }
+
+  TempDir temp_;
+};
+
+TEST_F(GrowthTest, MoreMissionsAreARunOfThatManyFromTheStart) {
+  Fly(Dir(), Masses({1, 2}, 10));
+  const SweepPlan more = Masses({1, 2}, 20);
+  {
+    const auto store = Open(Dir(), more);
+    EXPECT_EQ(store->Grown(), "stage online: 20 missions per arm for 10");
+    EXPECT_EQ(store->Stored().size(), 20u);
+    EXPECT_TRUE(store->FindDamage().empty());
+  }
+  Fly(Dir(), more);
+  EXPECT_EQ(Open(Dir(), more)->Grown(), "");
+  EXPECT_EQ(DigestOfDir(Dir()), Fresh(more));
+}
+
+TEST_F(GrowthTest, AValueMoreOnAnAxisMovesTheArmsBehindIt) {
+  const SweepPlan few = Masses({1, 3}, 10), more = Masses({0.5, 1, 2, 3}, 12);
+  Fly(Dir(), few);
+  const SweepPlan mixed = Masses({3, 1}, 10);
+  {
+    const auto store = Open(Dir(), mixed);
+    EXPECT_EQ(store->Grown(), "its arms in another order");
+    EXPECT_TRUE(store->FindDamage().empty());
+  }
+  {
+    const auto store = Open(Dir(), more);
+    EXPECT_EQ(
+        store->Grown(),
+        "stage online: 12 missions per arm for 10; stage online: arms added: rbs,mass_kg=0.5, rbs,mass_kg=2");
+    EXPECT_EQ(store->Stored().front(), (RunId{0, 1, 0}));
+  }
+  ResultReader reader(Dir());
+  EXPECT_EQ(reader.Status()[1].done, 10);
+  EXPECT_EQ(reader.Status()[3].wall_s, 10 * 0.25) << "timings move along";
+  EXPECT_EQ(reader.LoadMission({0, 3, 4}).record.total_j, RecordOf(few, {0, 1, 4}).total_j);
+  Fly(Dir(), more);
+  EXPECT_EQ(DigestOfDir(Dir()), Fresh(more));
+}
+
+TEST_F(GrowthTest, WhatHasFailedIsStillTheSameMissions) {
+  const SweepPlan plan = Masses({1, 3}, 10);
+  {
+    const auto store = Open(Dir(), plan);
+    store->PutFailure({0, 1, 3}, {"exception", "broken"});
+    store->Commit();
+  }
+  Open(Dir(), Masses({1, 2, 3}, 10));
+  const std::vector<FailedMission> failures = ResultReader(Dir()).Failures();
+  ASSERT_EQ(failures.size(), 1u);
+  EXPECT_EQ(failures[0].id, (RunId{0, 2, 3}));
+}
+
+TEST_F(GrowthTest, WhatWouldChangeStoredMissionsIsRefusedWithTheDifference) {
+  Fly(Dir(), Masses({1, 2}, 10));
+  const std::string head = "holds results of another recipe: ", tail = "; give another --out";
+  EXPECT_EQ(Refused(Masses({1, 2}, 9)),
+            head + "stage online has 10 missions per arm there and 9 here, and none is taken out" + tail);
+  EXPECT_EQ(Refused(Masses({1, 3}, 10)),
+            head + "stage online: arm rbs,mass_kg=2 is there, but not here" + tail);
+  SweepPlan other = Masses({1, 2, 3}, 20);
+  other.seed = 8;
+  EXPECT_EQ(Refused(other), head + "the seed is 7 there and 8 here" + tail);
+  other = Masses({1, 2, 3}, 20);
+  other.stages[0].arms[1].config.robot.speed_mps = 6;
+  EXPECT_EQ(Refused(other), head + "arm rbs,mass_kg=2: robot.speed_mps is 5 there and 6 here" + tail);
+  other = Masses({1, 2, 3}, 20);
+  other.stages[0].arms[0].config.mission.first_scenario = 100;
+  EXPECT_EQ(Refused(other),
+            head + "arm rbs,mass_kg=1: mission.first_scenario is 0 there and 100 here" + tail);
+  other = Masses({1, 2}, 20);
+  other.stages[0].precision = Precision{"msr_pct", 2, 140};
+  EXPECT_EQ(Refused(other), head + "stage online has another precision there than here" + tail);
+}
+
+TEST_F(GrowthTest, OtherCodeOrAnotherWorldIsNotGrowth) {
+  const SweepPlan few = Masses({1}, 10), more = Masses({1}, 20);
+  Fly(Dir(), few);
+  Recipe recipe = RecipeOf(more);
+  recipe.code["flight"] = {"ffff"};
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultStore::Open(Dir(), recipe, LayoutOf(more)); }),
+                       "the code of flight is 0123abcd there and ffff here"));
+  recipe = RecipeOf(more);
+  recipe.inputs = {{"worlds/ridges.yaml", "fingerprint-2"}};
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultStore::Open(Dir(), recipe, LayoutOf(more)); }),
+                       "worlds/ridges.yaml is fingerprint-1 there and fingerprint-2 here"));
+  EXPECT_EQ(ReadPlan(), few.CanonicalText());
+  recipe = RecipeOf(more);
+  recipe.inputs["worlds/mine.yaml"] = "fingerprint-3";
+  recipe.files = {{"mine.yaml", "sha", std::nullopt}};
+  recipe.places = {{"worlds/mine.yaml", "mine.yaml"}};
+  recipe.code["pixels"] = {"89ab"};
+  ResultStore::Open(Dir(), recipe, LayoutOf(more));
+  const Recipe grown = ResultReader(Dir()).StoredRecipe();
+  EXPECT_EQ(grown.inputs, recipe.inputs);
+  EXPECT_EQ(grown.places, recipe.places);
+  EXPECT_EQ(grown.code, recipe.code);
+}
+
+TEST_F(GrowthTest, AWarmUpThatNetworksHaveLearnedFromStaysAsItIs) {
+  const SweepPlan plan = Learning({"warmup"}, 10, 8);
+  Fly(Dir(), plan);
+  PutNetwork(Dir(), plan, "00ff");
+  EXPECT_TRUE(Contains(
+      Refused(Learning({"warmup"}, 12, 8)),
+      "stage warmup has 10 missions per arm there and 12 here, and the networks of stage online have "
+      "learned from them"));
+  EXPECT_TRUE(Contains(Refused(Learning({"another", "warmup"}, 10, 8)),
+                       "the networks of stage online have learned from warmup/warmup there and would from "
+                       "warmup/another here"));
+  EXPECT_EQ(Open(Dir(), Learning({"warmup", "another"}, 10, 8))->Grown(),
+            "stage warmup: arms added: another");
+  const SweepPlan more = Learning({"warmup", "another"}, 10, 16);
+  EXPECT_EQ(Open(Dir(), more)->Grown(), "stage online: 16 missions per arm for 8");
+  const FlownNetworks networks = ResultReader(Dir()).Networks();
+  ASSERT_EQ(networks.uses.size(), 1u);
+  EXPECT_EQ(networks.uses[0].stage, 2);
+  Fly(Dir(), more);
+  EXPECT_EQ(DigestOfDir(Dir()), Fresh(more));
+}
+
+TEST_F(GrowthTest, AWarmUpThatNobodyHasLearnedFromMayGrow) {
+  Fly(Dir(), Learning({"warmup"}, 10, 8));
+  EXPECT_EQ(Open(Dir(), Learning({"warmup"}, 12, 8))->Grown(), "stage warmup: 12 missions per arm for 10");
+}
+
+TEST_F(GrowthTest, ShardsGrowOneByOneAndMergeIntoTheRunOfBefore) {
+  const SweepPlan few = Masses({1, 3}, 10), more = Masses({1, 2, 3}, 15);
+  for (int part = 0; part < 2; ++part) Fly(temp_ / fmt::format("part{}", part), few, part, 2);
+  const std::vector<std::string> parts = {temp_ / "part0", temp_ / "part1"};
+  MergeStores(Dir(), parts);
+  Fly(parts[0], more, 0, 2);
+  EXPECT_TRUE(
+      Contains(UserErrorOf([&] { MergeStores(Dir(), parts); }), "cannot be merged: the plan differs"));
+  Fly(parts[1], more, 1, 2);
+  MergeStores(Dir(), parts);
+  EXPECT_EQ(DigestOfDir(Dir()), Fresh(more));
+}
+
+}  // namespace
+}  // namespace ed3r
