@@ -53,6 +53,7 @@ void Describe(const Scene& scene, const WorldMeasures& measures) {
              size_m.x(), size_m.y(), size_m.z(), *lowest, *highest, scene.Trees().size(),
              scene.Fingerprint().substr(0, 16));
   const StartArea& start = scene.Start();
+  for (const std::string& note : scene.Notes()) fmt::print("{}\n", note);
   fmt::print("start: disc of {:g} m around ({:g}, {:g}), {:g} .. {:g} m above ground\n\n", start.radius_m,
              start.x_m, start.y_m, start.height_min_m, start.height_max_m);
   PrintSites(scene, measures);
@@ -86,6 +87,7 @@ Json JsonOf(const Scene& scene, const WorldMeasures& measures) {
                {"fingerprint", scene.Fingerprint()},
                {"size_m", JsonOf(scene.SizeM())},
                {"trees", scene.Trees().size()},
+               {"notes", scene.Notes()},
                {"start_height_m", {measures.start_height_min_m, measures.start_height_max_m}},
                {"sites", Json::array()},
                {"base_stations", Json::array()},

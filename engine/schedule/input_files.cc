@@ -6,11 +6,13 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <vector>
 
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
 #include "engine/core/sha256.h"
 #include "engine/sweep/setting.h"
+#include "engine/world/terrain.h"
 #include "engine/world/world_file.h"
 
 namespace ed3r {
@@ -60,23 +62,48 @@ InputFile Kept(const fs::path& path, const std::string& name) {
   return file;
 }
 
+// What stands beside an elevation grid and says how it is to be read (.prj, .tfw, masks), where it will have to stand
+// again -> where it lies: beside the file that a link leads to.
+std::map<fs::path, fs::path> BesideGrid(const GridTerrainSpec& grid) {
+  const fs::path place = Located(grid.file);
+  std::map<fs::path, fs::path> beside;
+  const std::vector<std::string> files = ElevationGridFiles(grid);
+  const std::string stem = fs::path(files.front()).stem().string();
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    std::string name = fs::path(files[i]).filename().string();
+    if (name.starts_with(stem)) name.replace(0, stem.size(), place.stem().string());
+    beside[place.parent_path() / name] = files[i];
+  }
+  return beside;
+}
+
 }  // namespace
 
 InputFiles ReadInputFiles(const SweepPlan& plan) {
   const std::map<std::string, fs::path> called = CalledFiles(plan);
   std::set<fs::path> paths;
+  std::map<fs::path, fs::path> elsewhere;
   for (const auto& [name, path] : called) paths.insert(path);
   for (const std::string& world : Worlds(plan)) {
     const WorldSpec spec = ReadWorldFile(world);
     for (const std::string& base : spec.bases) paths.insert(Located(base));
-    if (spec.grid) paths.insert(Located(spec.grid->file));
+    if (spec.grid) {
+      paths.insert(Located(spec.grid->file));
+      for (const auto& [place, lies] : BesideGrid(*spec.grid)) {
+        paths.insert(place);
+        elsewhere[place] = lies;
+      }
+    }
     if (spec.forest && spec.forest->stem_map) paths.insert(Located(spec.forest->stem_map->file));
   }
   InputFiles kept;
   if (paths.empty()) return kept;
   const fs::path folder = CommonFolder(paths);
-  for (const fs::path& path : paths)
-    kept.files.push_back(Kept(path, path.lexically_relative(folder).string()));
+  for (const fs::path& path : paths) {
+    const auto lies = elsewhere.find(path);
+    kept.files.push_back(
+        Kept(lies == elsewhere.end() ? path : lies->second, path.lexically_relative(folder).string()));
+  }
   for (const auto& [name, path] : called) kept.places[name] = path.lexically_relative(folder).string();
   return kept;
 }

@@ -19,7 +19,7 @@ struct InputFiles {
   std::map<std::string, std::string> places;  // what the plan calls a file -> its name
 };
 
-// Worlds with their elevation grids and stem maps, and detectors that are files. UserError where one cannot be read.
+// Worlds with their elevation grids (and what stands beside these) and stem maps, and detectors that are files. UserError where one cannot be read.
 InputFiles ReadInputFiles(const SweepPlan& plan);
 
 }  // namespace ed3r

@@ -100,7 +100,7 @@ std::vector<Tree> Generate(const GeneratedForestSpec& spec, const Eigen::Vector3
 }
 
 StemMap CropStand(const StemMapSpec& spec) {
-  StemMap map = ReadStemMap(spec.file);
+  StemMap map = ReadStemMap(spec);
   const Eigen::Vector2d extent_m = spec.extent_m.value_or(map.size_m - spec.offset_m);
   constexpr double kRoundingM = 1e-6;
   const Eigen::Vector2d needed_m = spec.offset_m + extent_m;
@@ -128,8 +128,9 @@ StemMap CropStand(const StemMapSpec& spec) {
 
 // Tiles the stand over the area; every other tile is mirrored, so that its edges meet themselves.
 std::vector<Tree> Tile(const StemMapSpec& spec, const Eigen::Vector3d& size_m, const Site& site,
-                       std::uint64_t seed) {
+                       std::uint64_t seed, std::vector<std::string>* notes) {
   const StemMap map = CropStand(spec);
+  if (notes != nullptr) notes->insert(notes->end(), map.notes.begin(), map.notes.end());
   const int columns = static_cast<int>(std::ceil(size_m.x() / map.size_m.x()));
   const int rows = static_cast<int>(std::ceil(size_m.y() / map.size_m.y()));
   std::vector<Tree> trees;
@@ -160,9 +161,10 @@ std::vector<Tree> Tile(const StemMapSpec& spec, const Eigen::Vector3d& size_m, c
 }  // namespace
 
 std::vector<Tree> PlantForest(const ForestSpec& spec, const Eigen::Vector3d& size_m, const Terrain& terrain,
-                              const std::vector<ClearDisc>& clear, std::uint64_t seed) {
+                              const std::vector<ClearDisc>& clear, std::uint64_t seed,
+                              std::vector<std::string>* notes) {
   const Site site(spec, size_m, terrain, clear);
-  return spec.stem_map ? Tile(*spec.stem_map, size_m, site, seed)
+  return spec.stem_map ? Tile(*spec.stem_map, size_m, site, seed, notes)
                        : Generate(*spec.generated, size_m, site, seed);
 }
 

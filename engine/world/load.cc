@@ -17,8 +17,8 @@
 namespace ed3r {
 namespace {
 
-Terrain BuildTerrain(const WorldSpec& spec) {
-  Terrain terrain = spec.grid ? ReadElevationGrid(*spec.grid, spec.size_m, spec.cell_m)
+Terrain BuildTerrain(const WorldSpec& spec, std::vector<std::string>& notes) {
+  Terrain terrain = spec.grid ? ReadElevationGrid(*spec.grid, spec.size_m, spec.cell_m, &notes)
                               : GenerateTerrain(*spec.generated, spec.size_m, spec.cell_m, spec.seed);
   const float highest = *std::max_element(terrain.height_m.begin(), terrain.height_m.end());
   if (highest >= spec.size_m.z())
@@ -82,10 +82,11 @@ std::vector<ClearDisc> ClearDiscs(const ForestSpec& forest, const Scene::Parts& 
   return discs;
 }
 
-std::vector<Tree> BuildForest(const WorldSpec& spec, const Scene::Parts& parts) {
+std::vector<Tree> BuildForest(const WorldSpec& spec, const Scene::Parts& parts,
+                              std::vector<std::string>* notes = nullptr) {
   if (!spec.forest) return {};
-  std::vector<Tree> trees =
-      PlantForest(*spec.forest, parts.size_m, parts.terrain, ClearDiscs(*spec.forest, parts), spec.seed);
+  std::vector<Tree> trees = PlantForest(*spec.forest, parts.size_m, parts.terrain,
+                                        ClearDiscs(*spec.forest, parts), spec.seed, notes);
   const std::size_t cells = static_cast<std::size_t>(parts.terrain.columns - 1) * (parts.terrain.rows - 1);
   const std::size_t most = (StaticGeometry::kMaxTriangles - 2 * cells) / kTrianglesPerTree;
   if (trees.size() > most)
@@ -101,7 +102,7 @@ std::shared_ptr<const Scene> Scene::Load(const std::string& world_file) {
   Parts parts;
   parts.name = spec.name;
   parts.size_m = spec.size_m;
-  parts.terrain = BuildTerrain(spec);
+  parts.terrain = BuildTerrain(spec, parts.notes);
   for (const PointSpec& site : spec.sites)
     parts.sites.push_back({site.name, Place(site, "site", spec, parts.terrain), site.known});
   for (const PointSpec& station : spec.base_stations)
@@ -114,7 +115,7 @@ std::shared_ptr<const Scene> Scene::Load(const std::string& world_file) {
     parts.trees = BuildForest(spec, parts);  // without clearings for sites: they are not known yet
     parts.sites = PlaceSites(spec, parts);
   }
-  parts.trees = BuildForest(spec, parts);
+  parts.trees = BuildForest(spec, parts, &parts.notes);
   return std::make_shared<const Scene>(std::move(parts));
 }
 

@@ -77,6 +77,9 @@ class Scene {
     std::vector<BaseStation> base_stations;
     StartArea start;
     FireShape fire;
+    // What was made of the files beyond what they say by themselves (units, estimated crowns), a line each. No mission
+    // meets it: it is not in the fingerprint.
+    std::vector<std::string> notes;
   };
   explicit Scene(Parts parts);  // bakes the geometry; also for tests
 
@@ -88,6 +91,7 @@ class Scene {
   const std::vector<BaseStation>& BaseStations() const { return parts_.base_stations; }
   const StartArea& Start() const { return parts_.start; }
   const FireShape& Fire() const { return parts_.fire; }
+  const std::vector<std::string>& Notes() const { return parts_.notes; }
   const StaticGeometry& Geometry() const { return *geometry_; }
 
   // SHA-256 of everything that a mission can meet; part of a result's identity.

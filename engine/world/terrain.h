@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "engine/world/scene.h"
 #include "engine/world/world_file.h"
@@ -18,9 +20,13 @@ void PutLowestAtZero(Terrain& terrain);
 Terrain GenerateTerrain(const GeneratedTerrainSpec& spec, const Eigen::Vector3d& size_m, double cell_m,
                         std::uint64_t seed);
 
-// Reads an ESRI ASCII grid or a GeoTIFF through GDAL; cubic (Catmull-Rom) interpolation between cell centres.
-// Throws UserError at the world file's key: unreadable, wrong kind of grid, too small, or without data where
-// the area needs it.
-Terrain ReadElevationGrid(const GridTerrainSpec& spec, const Eigen::Vector3d& size_m, double cell_m);
+// Reads an ESRI ASCII grid or a GeoTIFF (raster_file.h); cubic (Catmull-Rom) interpolation between cell centres.
+// `notes`, where given, gains a line when the file's units or scale were applied. Throws UserError at the world file's
+// key: unreadable, wrong kind of grid or projection, too small, or without data where the area needs it.
+Terrain ReadElevationGrid(const GridTerrainSpec& spec, const Eigen::Vector3d& size_m, double cell_m,
+                          std::vector<std::string>* notes = nullptr);
+
+// The grid's file (canonical) and those beside it that say how it is to be read. Throws as above.
+std::vector<std::string> ElevationGridFiles(const GridTerrainSpec& spec);
 
 }  // namespace ed3r

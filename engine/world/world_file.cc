@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "engine/world/stem_map.h"
 #include "engine/world/strict_map.h"
 
 namespace ed3r {
@@ -76,6 +77,14 @@ GeneratedTerrainSpec ReadGenerated(StrictMap& map) {
   return spec;
 }
 
+std::optional<LengthUnit> ReadUnit(StrictMap& map, std::string_view key) {
+  std::string word;
+  if (!map.Read(key, word)) return std::nullopt;
+  const std::optional<LengthUnit> unit = FindLengthUnit(word);
+  if (!unit) map.Fail(key, fmt::format("'{}' is not allowed; allowed: {}", word, KnownLengthUnits()));
+  return unit;
+}
+
 GridTerrainSpec ReadGrid(StrictMap& map, const WorldSpec& world) {
   GridTerrainSpec spec;
   spec.extent_m = world.size_m.head<2>();
@@ -83,6 +92,8 @@ GridTerrainSpec ReadGrid(StrictMap& map, const WorldSpec& world) {
   map.Read("offset_m", spec.offset_m, {.min = 0, .max = 1e7, .unit = "m"});
   map.Read("extent_m", spec.extent_m, {.min = 1, .max = 1e6, .unit = "m"});
   map.Read("height_scale", spec.height_scale, {.min = 0.001, .max = 1000});
+  spec.length_unit = ReadUnit(map, "length_unit");
+  spec.height_unit = ReadUnit(map, "height_unit");
   map.Finish();
   spec.file = Beside(map.File(), spec.file);
   spec.file_place = map.Place("file");
@@ -129,7 +140,18 @@ GeneratedForestSpec ReadGeneratedForest(StrictMap& map) {
   return spec;
 }
 
-StemMapSpec ReadStemMap(StrictMap& map) {
+void ReadStemColumns(StrictMap& map, StemMapSpec& spec) {
+  std::optional<StrictMap> columns = map.ReadMap("columns");
+  if (!columns) return;
+  spec.columns_place = map.Place("columns");
+  for (const std::string_view name : StemColumnNames()) {
+    std::string header;
+    if (columns->Read(name, header)) spec.columns[std::string(name)] = header;
+  }
+  columns->Finish();
+}
+
+StemMapSpec ReadStemMapSpec(StrictMap& map) {
   StemMapSpec spec;
   Eigen::Vector2d extent_m;
   map.Require("file", spec.file);
@@ -139,6 +161,18 @@ StemMapSpec ReadStemMap(StrictMap& map) {
   map.Read("crown_scale", spec.crown_scale, {.min = 0.05, .max = 10});
   map.Read("min_height_m", spec.min_height_m, {.min = 0, .max = 120, .unit = "m"});
   map.Read("keep", spec.keep, {.min = 0, .max = 1});
+  ReadStemColumns(map, spec);
+  std::string word;
+  if (map.Read("estimate_missing", word)) {
+    spec.estimate_missing = FindForestKind(word);
+    if (!spec.estimate_missing)
+      map.Fail("estimate_missing",
+               fmt::format("'{}' is not allowed; allowed: conifers | deciduous | mixed | tropical", word));
+  }
+  if (map.Read("same_spot", word)) {
+    if (word != "tallest") map.Fail("same_spot", fmt::format("'{}' is not allowed; allowed: tallest", word));
+    spec.tallest_of_a_spot = true;
+  }
   map.Finish();
   spec.file = Beside(map.File(), spec.file);
   spec.file_place = map.Place("file");
@@ -154,7 +188,7 @@ ForestSpec ReadForest(StrictMap& map) {
   map.Read("station_clear_m", spec.station_clear_m, kClear);
   map.Read("start_clear_m", spec.start_clear_m, kClear);
   if (auto generated = map.ReadMap("generated")) spec.generated = ReadGeneratedForest(*generated);
-  if (auto stem_map = map.ReadMap("stem_map")) spec.stem_map = ReadStemMap(*stem_map);
+  if (auto stem_map = map.ReadMap("stem_map")) spec.stem_map = ReadStemMapSpec(*stem_map);
   map.Finish();
   return spec;
 }

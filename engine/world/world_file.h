@@ -8,12 +8,15 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/world/length_unit.h"
 #include "engine/world/scene.h"
 #include "engine/world/text_place.h"
+#include "engine/world/tree_allometry.h"
 
 namespace ed3r {
 
@@ -37,12 +40,14 @@ struct GeneratedTerrainSpec {
 
 // Terrain from a real elevation grid. The area's south-west corner lies offset_m from the centre of the
 // grid's south-west cell; extent_m of the grid is stretched to the area, heights are multiplied by
-// height_scale.
+// height_scale. What the file tells of its units, scale, offset and masks is applied; length_unit and height_unit
+// say what it does not tell.
 struct GridTerrainSpec {
   std::string file;  // as the program opens it
   Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d extent_m = Eigen::Vector2d::Zero();
   double height_scale = 1.0;
+  std::optional<LengthUnit> length_unit, height_unit;
   TextPlace file_place, extent_place;
 };
 
@@ -66,7 +71,11 @@ struct StemMapSpec {
   double crown_scale = 1.0;                 // crown radii
   double min_height_m = 3.0;                // after scaling; lower trees are left out
   double keep = 1.0;                        // share of the trees that stay, drawn from the seed
-  TextPlace file_place;
+  // What stem_map.h calls a column -> what the file's header calls it.
+  std::map<std::string, std::string> columns;
+  std::optional<ForestKind> estimate_missing;  // crowns and trunks that were not measured (tree_allometry.h)
+  bool tallest_of_a_spot = false;  // of trees at one spot the tallest stays; otherwise they are refused
+  TextPlace file_place, columns_place;
 };
 
 struct ForestSpec {

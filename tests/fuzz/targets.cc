@@ -90,7 +90,11 @@ void FuzzGrid(std::string_view bytes) {
 
 void FuzzStemMap(std::string_view bytes) {
   const InputFile file(bytes, "stems.csv");
-  Refusable([&] { ReadStemMap(file.path()); });
+  StemMapSpec spec;
+  spec.file = file.path();
+  spec.estimate_missing = ForestKind::kMixed;
+  spec.tallest_of_a_spot = true;
+  Refusable([&] { ReadStemMap(spec); });
 }
 
 void FuzzLog(std::string_view bytes) {

@@ -278,8 +278,12 @@ TEST_F(BrokenFiles, StemMaps) {
   const std::string rows = "0,0,20,15,8,2\n60,50,20,15,8,2\n";
   EXPECT_EQ(message(header + rows), "no error");
   EXPECT_EQ(message("# a comment\n" + header + rows), "no error");
-  EXPECT_EQ(message("x_m,y_m,height_m\n1,2,3\n"),
-            "stems.csv:1:1: no column 'dbh_cm' (a stem map has it); columns: x_m, y_m, height_m");
+  EXPECT_EQ(
+      message("x_m,y_m,height_m\n1,2,3\n"),
+      "stems.csv: no column for the diameter at breast height (dbh_cm | dbh_mm | dbh_m | dbh_in); name it in "
+      "forest.stem_map.columns; or add 'estimate_missing: conifers' (or deciduous, mixed, tropical); "
+      "columns: x_m, "
+      "y_m, height_m");
   EXPECT_EQ(message(header + rows + "5,5,20,tall,8,2\n"),
             "stems.csv:4:8: height_m: 'tall' is not allowed; allowed: 0.5 .. 130 m");
   EXPECT_EQ(message(header + rows + "5,5,20,15,16,2\n"),

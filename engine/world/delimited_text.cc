@@ -1,0 +1,83 @@
+#include "engine/world/delimited_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+// The header's bytes [begin, end): the first line that is neither blank nor a comment.
+struct Line {
+  std::size_t begin, end;
+};
+
+Line FindHeader(std::string_view text) {
+  std::size_t begin = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  while (begin < text.size()) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    if (!line.starts_with('#') && line.find_first_not_of(" \t\r") != std::string_view::npos)
+      return {begin, end};
+    begin = end + 1;
+  }
+  return {text.size(), text.size()};
+}
+
+std::size_t CountOutsideQuotes(std::string_view line, char wanted) {
+  std::size_t count = 0;
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    count += !quoted && c == wanted;
+  }
+  return count;
+}
+
+char DelimiterOf(std::string_view header, const std::string& path) {
+  const std::size_t commas = CountOutsideQuotes(header, ','), semicolons = CountOutsideQuotes(header, ';'),
+                    tabs = CountOutsideQuotes(header, '\t');
+  if (semicolons > 0 && semicolons >= std::max(commas, tabs)) return ';';
+  if (tabs > 0 && tabs >= commas) return '\t';
+  if (commas == 0 && CountOutsideQuotes(header.substr(0, header.find_last_not_of(" \r") + 1), ' ') > 1)
+    throw UserError(
+        fmt::format("{}: its cells are apart by spaces; allowed: commas, semicolons or tabs", path));
+  return ',';
+}
+
+}  // namespace
+
+CommaSeparated ToCommaSeparated(const std::string& path, std::string text) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw UserError(fmt::format("{}: UTF-16 text; save it as UTF-8", path));
+  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
+  const Line header = FindHeader(text);
+  const char delimiter =
+      DelimiterOf(std::string_view(text).substr(header.begin, header.end - header.begin), path);
+  CommaSeparated table{std::move(text), delimiter != ','};
+  if (table.decimal_commas) {
+    bool quoted = false;
+    for (std::size_t i = header.begin; i < table.text.size(); ++i) {
+      char& c = table.text[i];
+      if (c == '\n') quoted = false;
+      if (c == '"') quoted = !quoted;
+      if (quoted) continue;
+      if (c == ',') c = '.';
+      if (c == delimiter) c = ',';
+    }
+  }
+  if (std::string_view(table.text).substr(header.begin).starts_with("\"\",")) {
+    table.text[header.begin] = '_';
+    table.text[header.begin + 1] = '1';
+  }
+  if (header.begin < table.text.size() && table.text[header.begin] == ',')
+    table.text.insert(header.begin, 1, '_');
+  return table;
+}
+
+}  // namespace ed3r

@@ -1,0 +1,24 @@
+// Units of length by the words that rasters, projections and people use for them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace ed3r {
+
+struct LengthUnit {
+  double m = 1.0;         // metres in one
+  std::string_view name;  // as world files write it: m, ft, us-ft, ...
+};
+
+// "m | ft | us-ft | dm | cm | mm | km"
+std::string KnownLengthUnits();
+
+// The unit of a word such as "metre", "ft", "US survey foot", "us-ft"; case, '_' and '-' do not matter.
+std::optional<LengthUnit> FindLengthUnit(std::string_view word);
+
+// The unit that has so many metres, to 1 part in 10^9: the two kinds of foot are 2 in 10^6 apart.
+std::optional<LengthUnit> FindLengthUnit(double metres);
+
+}  // namespace ed3r

@@ -1,0 +1,286 @@
+#include "engine/world/raster_file.h"
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <string_view>
+
+#include "engine/core/check.h"
+#include "engine/core/file.h"
+#include "engine/world/quiet_gdal.h"
+
+namespace ed3r {
+namespace {
+
+// GDAL looks for georeferences and masks in files that are called alike; opening a pipe among them would wait.
+std::string WaitingSibling(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(file.parent_path(), error)) {
+    const std::string name = entry.path().filename().string();
+    const auto kind = entry.status(error).type();
+    using Kind = std::filesystem::file_type;
+    if (name.starts_with(stem) && (kind == Kind::fifo || kind == Kind::socket || kind == Kind::character))
+      return name;
+  }
+  return "";
+}
+
+bool IsGridNumber(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size() && !std::isinf(value);
+}
+
+bool IsHeaderName(std::string_view word) {
+  constexpr std::array<std::string_view, 10> kNames = {"ncols",     "nrows",       "xllcorner", "yllcorner",
+                                                       "xllcenter", "yllcenter",   "cellsize",  "dx",
+                                                       "dy",        "nodata_value"};
+  std::string lower(word);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::find(kNames.begin(), kNames.end(), lower) != kNames.end();
+}
+
+// What programs write where nothing is known. None is a height of ground on which trees burn.
+bool IsUsualMark(double value, GDALDataType type) {
+  for (const double mark : {-32768.0, -32767.0, -9999.0, -99999.0, -999999.0, -999.0})
+    if (value == mark) return true;
+  if (type == GDT_Int16 && value == std::numeric_limits<std::int16_t>::max()) return true;
+  if (type == GDT_UInt16 && value == std::numeric_limits<std::uint16_t>::max()) return true;
+  // Written as text, the largest float is rounded: -3.4e+38, -3.402823e+38.
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return std::abs(value) > 0.99 * kLargest && std::abs(value) < 1.01 * kLargest;
+}
+
+}  // namespace
+
+// The session comes before the dataset and goes after it.
+class RasterFile::Gdal {
+ public:
+  QuietGdal quiet;
+  struct Closer {
+    void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+  };
+  std::unique_ptr<GDALDataset, Closer> dataset;
+};
+
+RasterFile::RasterFile(const GridTerrainSpec& spec) : spec_(spec), gdal_(std::make_unique<Gdal>()) {
+  static constexpr const char* kDrivers[] = {"AAIGrid", "GTiff", nullptr};
+  if (const std::string why = WhyNoRegularFile(spec.file); !why.empty()) Fail("cannot be read: " + why);
+  // The absolute path: GDAL takes names with certain beginnings for other things than files.
+  const std::filesystem::path file = std::filesystem::canonical(spec.file);
+  file_ = file.string();
+  if (const std::string sibling = WaitingSibling(file); !sibling.empty())
+    Fail(fmt::format("beside it stands {}, which is no file", sibling));
+  gdal_->dataset.reset(
+      GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, kDrivers));
+  dataset_ = gdal_->dataset.get();
+  if (dataset_ == nullptr)
+    Fail(fmt::format("not readable as an ESRI ASCII grid or a GeoTIFF ({})", QuietGdal::LastError()));
+  CheckBands();
+  band_ = dataset_->GetRasterBand(1);
+  CheckTransform();
+  units_ = UnitsOf(*dataset_, file, spec);
+  cell_x_m_ *= units_.length.m;
+  cell_y_m_ *= units_.length.m;
+  CheckBlocks();
+  ReadCoding();
+  if (in_order_) CheckWords(file_);
+}
+
+RasterFile::~RasterFile() = default;
+
+void RasterFile::Fail(const std::string& problem) const {
+  FailAt(spec_.file_place, fmt::format("terrain.grid.file: '{}': {}", spec_.file, problem));
+}
+
+// One band of heights, and perhaps one that says where they are.
+void RasterFile::CheckBands() {
+  const int bands = dataset_->GetRasterCount();
+  const bool with_alpha = bands == 2 && dataset_->GetRasterBand(2)->GetColorInterpretation() == GCI_AlphaBand;
+  if (with_alpha) mask_ = dataset_->GetRasterBand(2);  // GDAL takes it for a mask where it is of bytes
+  if (bands != 1 && !with_alpha) Fail(fmt::format("{} bands; an elevation grid has one", bands));
+  GDALRasterBand& band = *dataset_->GetRasterBand(1);
+  if (GDALDataTypeIsComplex(band.GetRasterDataType())) Fail("complex numbers; allowed: heights");
+  if (band.GetColorTable() != nullptr) Fail("a picture (its band has a colour table); allowed: heights");
+}
+
+void RasterFile::CheckTransform() {
+  std::array<double, 6> transform;  // x = t0 + t1 column + t2 row, y = t3 + t4 column + t5 row
+  if (dataset_->GetGeoTransform(transform.data()) != CE_None) Fail("no cell size (not georeferenced)");
+  if (!std::all_of(transform.begin(), transform.end(), [](double t) { return std::isfinite(t); }))
+    Fail("its cell size or place is not a finite number");
+  if (transform[2] != 0.0 || transform[4] != 0.0 || transform[1] <= 0.0 || transform[5] == 0.0)
+    Fail("rotated; allowed: rows from west to east");
+  cell_x_m_ = transform[1];
+  cell_y_m_ = std::abs(transform[5]);
+  north_up_ = transform[5] < 0.0;
+  columns_ = dataset_->GetRasterXSize();
+  rows_ = dataset_->GetRasterYSize();
+  in_order_ = dataset_->GetDriver() != nullptr && EQUAL(dataset_->GetDriver()->GetDescription(), "AAIGrid");
+}
+
+// GDAL reads whole blocks, whose size the file tells.
+void RasterFile::CheckBlocks() const {
+  int block_columns = 0, block_rows = 0;
+  band_->GetBlockSize(&block_columns, &block_rows);
+  if (columns_ < 2 || rows_ < 2 || static_cast<double>(block_columns) * block_rows > kMaxWindowCells)
+    Fail(
+        fmt::format("{} x {} cells in blocks of {} x {}; allowed: at least 2 x 2, blocks of up to {:g} cells",
+                    columns_, rows_, block_columns, block_rows, kMaxWindowCells));
+}
+
+// GDAL takes a word among the heights of a text grid for 0.
+void RasterFile::CheckWords(const std::string& file) const {
+  const std::string text = ReadFile(file, kMaxModelBytes);
+  constexpr std::string_view kSpace = " \t\r\n";
+  for (std::size_t begin = text.find_first_not_of(kSpace); begin != std::string::npos;) {
+    const std::size_t end = std::min(text.find_first_of(kSpace, begin), text.size());
+    const std::string_view word = std::string_view(text).substr(begin, end - begin);
+    if (!IsGridNumber(word) && !IsHeaderName(word))
+      Fail(fmt::format("line {}: '{}' is no number",
+                       1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(begin), '\n'),
+                       word));
+    begin = text.find_first_not_of(kSpace, end);
+  }
+}
+
+void RasterFile::ReadCoding() {
+  int told = 0;
+  if (const double scale = band_->GetScale(&told); told != 0) scale_ = scale;
+  if (const double offset = band_->GetOffset(&told); told != 0) offset_ = offset;
+  if (!std::isfinite(scale_) || scale_ == 0.0 || !std::isfinite(offset_))
+    Fail(fmt::format(
+        "its heights are {:g} times the stored number and {:g}; allowed: a finite scale other than 0", scale_,
+        offset_));
+  const int flags = band_->GetMaskFlags();
+  const bool masked = (flags & (GMF_ALL_VALID | GMF_NODATA)) == 0;  // NODATA values are compared here
+  if (mask_ == nullptr && masked) mask_ = band_->GetMaskBand();
+}
+
+std::vector<double> RasterFile::Read(const CellWindow& window) const {
+  const std::size_t cells = static_cast<std::size_t>(window.columns) * window.rows;
+  std::vector<double> height(cells);
+  std::vector<unsigned char> valid(mask_ != nullptr ? cells : 0);
+  ReadRows(window, height.data(), valid.data());
+  CheckHoles(window, height, valid);
+  CheckMarks(window, height);
+  for (double& h : height) h = (scale_ * h + offset_) * units_.height.m;
+  CheckHeights(window, height);
+  return height;
+}
+
+// In the order of the file. A text grid from its first row on: GDAL finds a row by reading those before it, and where
+// one is missing it would read them again and again.
+void RasterFile::ReadRows(const CellWindow& window, double* raw, unsigned char* valid) const {
+  const int top = north_up_ ? rows_ - window.first_row - window.rows : window.first_row;
+  for (int file_row = in_order_ ? 0 : top; file_row < top + window.rows; ++file_row) {
+    const bool wanted = file_row >= top;
+    const int row = (north_up_ ? rows_ - 1 - file_row : file_row) - window.first_row;
+    const std::size_t begin = wanted ? static_cast<std::size_t>(row) * window.columns : 0;
+    double unused = 0.0;
+    const int columns = wanted ? window.columns : 1;
+    if (band_->RasterIO(GF_Read, window.first_column, file_row, columns, 1, wanted ? raw + begin : &unused,
+                        columns, 1, GDT_Float64, 0, 0) != CE_None)
+      Fail(fmt::format("row {} cannot be read ({})", file_row + 1, QuietGdal::LastError()));
+    if (mask_ != nullptr && wanted &&
+        mask_->RasterIO(GF_Read, window.first_column, file_row, columns, 1, valid + begin, columns, 1,
+                        GDT_Byte, 0, 0) != CE_None)
+      Fail(fmt::format("row {} of its mask cannot be read ({})", file_row + 1, QuietGdal::LastError()));
+  }
+}
+
+void RasterFile::CheckHoles(const CellWindow& window, const std::vector<double>& raw,
+                            const std::vector<unsigned char>& valid) const {
+  int has_no_data = 0;
+  // Compared as floats: a header's -3.4e38 is seldom the exact value in the cells.
+  const auto no_data = static_cast<float>(band_->GetNoDataValue(&has_no_data));
+  std::size_t holes = 0, first = 0;
+  for (std::size_t i = raw.size(); i-- > 0;) {
+    const bool hole = !std::isfinite(raw[i]) || (has_no_data != 0 && static_cast<float>(raw[i]) == no_data) ||
+                      (!valid.empty() && valid[i] == 0);
+    holes += hole;
+    if (hole) first = i;
+  }
+  if (holes == 0) return;
+  Fail(
+      fmt::format("{} of the {} cells that the area needs have no data (NODATA{}), the first at {}; move or "
+                  "shrink offset_m and extent_m",
+                  holes, raw.size(), valid.empty() ? "" : " or masked", PlaceOf(window, first)));
+}
+
+// Holes of a file that does not declare them. 0 is one where all else lies high above it: what programs leave that turn
+// or cut a grid.
+void RasterFile::CheckMarks(const CellWindow& window, const std::vector<double>& raw) const {
+  constexpr double kHighAboveM = 100.0;
+  const GDALDataType type = band_->GetRasterDataType();
+  const double unit_m = std::abs(scale_) * units_.height.m;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const double value : raw)
+    if (value != 0.0) lowest = std::min(lowest, value);
+  const bool zero_is_mark = offset_ == 0.0 && std::isfinite(lowest) && lowest * unit_m > kHighAboveM;
+  const auto is_mark = [&](double value) {
+    return (value == 0.0 && zero_is_mark) || IsUsualMark(value, type);
+  };
+  const auto first = std::find_if(raw.begin(), raw.end(), is_mark);
+  if (first == raw.end()) return;
+  const auto count = std::count(raw.begin(), raw.end(), *first);
+  Fail(fmt::format(
+      "{} of the {} cells that the area needs are {:.6g}, the first at {}: holes that it does not declare; "
+      "declare them (gdal_translate -a_nodata {:.6g}) and move or shrink offset_m and extent_m",
+      count, raw.size(), *first, PlaceOf(window, static_cast<std::size_t>(first - raw.begin())), *first));
+}
+
+// From the deepest sea to the highest mountain; what lies beyond is another unit, or a hole that the file does not
+// tell of.
+void RasterFile::CheckHeights(const CellWindow& window, const std::vector<double>& heights_m) const {
+  constexpr double kLowestM = -12000.0, kHighestM = 9000.0;
+  for (std::size_t i = 0; i < heights_m.size(); ++i)
+    if (const double height_m = spec_.height_scale * heights_m[i];
+        !(height_m >= kLowestM && height_m <= kHighestM))
+      Fail(fmt::format("a height of {:g} m at {}; allowed, after height_scale: {:g} .. {:g} m", height_m,
+                       PlaceOf(window, i), kLowestM, kHighestM));
+}
+
+std::string RasterFile::PlaceOf(const CellWindow& window, std::size_t index) const {
+  const int column = window.first_column + static_cast<int>(index % static_cast<std::size_t>(window.columns));
+  const int row = window.first_row + static_cast<int>(index / static_cast<std::size_t>(window.columns));
+  return fmt::format("[{:g}, {:g}] m from the south-west cell", column * cell_x_m_, row * cell_y_m_);
+}
+
+std::vector<std::string> RasterFile::Files() const {
+  std::vector<std::string> files = {file_};
+  const auto add = [&](const std::string& file) {
+    const bool overviews = std::filesystem::path(file).extension() == ".ovr";  // never read
+    if (!file.empty() && !overviews && std::find(files.begin(), files.end(), file) == files.end())
+      files.push_back(file);
+  };
+  char** const list = dataset_->GetFileList();
+  for (char** name = list; name != nullptr && *name != nullptr; ++name) add(*name);
+  CSLDestroy(list);
+  add(units_.prj_file);
+  return files;
+}
+
+std::string RasterFile::Note() const {
+  std::string note;
+  const auto add = [&](const std::string& words) {
+    note += (note.empty() ? "elevation grid: " : ", ") + words;
+  };
+  if (units_.length.m != 1.0) add(fmt::format("lengths in {}", units_.length.name));
+  if (units_.height.m != 1.0) add(fmt::format("heights in {}", units_.height.name));
+  if (scale_ != 1.0 || offset_ != 0.0)
+    add(fmt::format("heights are {:g} times what is stored, and {:g}", scale_, offset_));
+  return note;
+}
+
+}  // namespace ed3r

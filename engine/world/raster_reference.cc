@@ -1,0 +1,249 @@
+#include "engine/world/raster_reference.h"
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "engine/core/check.h"
+#include "engine/core/file.h"
+#include "engine/world/utm_zone.h"
+
+namespace ed3r {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::uintmax_t kMaxPrjBytes = 1u << 20;
+
+std::string LowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+struct Degrees {
+  double longitude, latitude;
+};
+
+class Reference {
+ public:
+  Reference(GDALDataset& dataset, const std::filesystem::path& file, const GridTerrainSpec& spec)
+      : dataset_(dataset), file_(file), spec_(spec) {
+    dataset.GetGeoTransform(transform_.data());
+    if (const OGRSpatialReference* stored = dataset.GetSpatialRef(); stored != nullptr && !stored->IsEmpty())
+      system_ = *stored;
+    ReadPrj();
+  }
+
+  RasterUnits Units() {
+    CheckKind();
+    RasterUnits units;
+    units.length = Length();
+    units.height = Height(units.length);
+    CheckScale(units.length);
+    units.prj_file = prj_file_;
+    return units;
+  }
+
+ private:
+  [[noreturn]] void Fail(const std::string& problem) const {
+    FailAt(spec_.file_place, fmt::format("terrain.grid.file: '{}': {}", spec_.file, problem));
+  }
+
+  // A grid of another kind, made from this one. Holes are declared: what a turned grid leaves open would be 0 m.
+  std::string Reprojected(const Degrees& at) const {
+    const std::filesystem::path name(spec_.file);
+    return fmt::format("gdalwarp -t_srs {} -r cubic -ot Float32 -dstnodata -9999 '{}' '{}_utm.tif'",
+                       UtmZone(at.longitude, at.latitude), name.filename().string(), name.stem().string());
+  }
+
+  // GDAL reads the .prj of a text grid, but not that of a GeoTIFF with a world file, nor the unit of heights in it, and
+  // passes over one that it does not understand.
+  void ReadPrj() {
+    prj_file_ = PrjBeside(file_);
+    if (prj_file_.empty()) return;
+    const std::string text = ReadFile(prj_file_, kMaxPrjBytes);
+    ReadOldPrj(text);
+    if (!system_.IsEmpty()) return;
+    char** lines = CSLTokenizeString2(text.c_str(), "\n", 0);
+    const OGRErr error = system_.importFromESRI(lines);
+    CSLDestroy(lines);
+    if (error != OGRERR_NONE || system_.IsEmpty())
+      Fail(fmt::format(
+          "beside it stands {}, which is not understood; allowed: a coordinate system as ESRI writes it",
+          std::filesystem::path(prj_file_).filename().string()));
+    system_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  }
+
+  // Before WKT: "Zunits FEET", a line of its own.
+  void ReadOldPrj(const std::string& text) {
+    char** words = CSLTokenizeString2(LowerCase(text).c_str(), " \t\r\n", 0);
+    for (int i = 0; words != nullptr && words[i] != nullptr && words[i + 1] != nullptr; ++i)
+      if (std::string_view(words[i]) == "zunits" && std::string_view(words[i + 1]) != "no")
+        prj_height_ = words[i + 1];
+    CSLDestroy(words);
+  }
+
+  void CheckKind() const {
+    if (system_.IsGeocentric()) Fail("geocentric; allowed: a projected grid");
+    if (system_.IsGeographic()) FailDegrees(system_.GetAngularUnits(nullptr) / kDegree);
+    // Without a coordinate system: 0.0001 .. 0.01 at a place on the globe are no metres.
+    const double cell = std::max(std::abs(transform_[1]), std::abs(transform_[5]));
+    const bool on_the_globe = std::abs(transform_[0]) <= 360.0 && std::abs(transform_[3]) <= 90.0;
+    if (system_.IsEmpty() && cell < 0.02 && on_the_globe) FailDegrees(1.0);
+  }
+
+  [[noreturn]] void FailDegrees(double degrees_per_unit) const {
+    const Degrees at{degrees_per_unit * CentreX(), degrees_per_unit * CentreY()};
+    Fail(fmt::format("in degrees (cells of {:g}); allowed: a projected grid: {}", transform_[1],
+                     Reprojected(at)));
+  }
+
+  double CentreX() const { return transform_[0] + transform_[1] * dataset_.GetRasterXSize() / 2.0; }
+  double CentreY() const { return transform_[3] + transform_[5] * dataset_.GetRasterYSize() / 2.0; }
+
+  LengthUnit Length() const {
+    std::optional<LengthUnit> told;
+    if (system_.IsProjected() || system_.IsLocal()) {
+      const char* name = nullptr;
+      const double metres = system_.GetLinearUnits(&name);
+      const std::string_view word = name == nullptr ? "" : name;
+      if (system_.IsProjected() || (word != "unknown" && word != "unnamed" && !word.empty())) {
+        told = FindLengthUnit(metres);
+        if (!told)
+          Fail(fmt::format("its lengths are in '{}' of {:g} m; allowed: {}", word, metres,
+                           KnownLengthUnits()));
+      }
+    }
+    CheckSame(told, spec_.length_unit, "lengths", "length_unit");
+    return told ? *told : spec_.length_unit.value_or(LengthUnit{1.0, "m"});
+  }
+
+  void CheckSame(const std::optional<LengthUnit>& told, const std::optional<LengthUnit>& asked,
+                 const char* what, const char* key) const {
+    if (told && asked && told->name != asked->name)
+      Fail(fmt::format("its {} are in {}, terrain.grid.{} says {}; leave {} out", what, told->name, key,
+                       asked->name, key));
+  }
+
+  // The unit of the band, of the vertical coordinate system, of the old .prj: all that say one must agree.
+  LengthUnit Height(const LengthUnit& length) const {
+    std::optional<LengthUnit> told;
+    const auto hear = [&](const std::string& word) {
+      if (word.empty()) return;
+      const std::optional<LengthUnit> unit = FindLengthUnit(word);
+      if (!unit && !spec_.height_unit)
+        Fail(fmt::format(
+            "its heights are in '{}', which is unknown; add 'height_unit: m' (or {}) to terrain.grid", word,
+            KnownLengthUnits()));
+      if (unit && told && told->name != unit->name)
+        Fail(fmt::format(
+            "its heights are in {} here and in {} there (unit of the band, vertical system, .prj)",
+            told->name, unit->name));
+      if (unit) told = unit;
+    };
+    hear(dataset_.GetRasterBand(1)->GetUnitType());
+    hear(VerticalUnit());
+    hear(prj_height_);
+    CheckSame(told, spec_.height_unit, "heights", "height_unit");
+    if (told) return *told;
+    if (spec_.height_unit) return *spec_.height_unit;
+    if (length.m != 1.0)
+      Fail(fmt::format(
+          "its lengths are in {0}, and nothing tells the unit of its heights; add 'height_unit: {0}' or "
+          "'height_unit: m' to terrain.grid",
+          length.name));
+    return {1.0, "m"};
+  }
+
+  // Of a compound coordinate system, or "".
+  std::string VerticalUnit() const {
+    if (!system_.IsCompound()) return "";
+    OGRAxisOrientation direction = OAO_Up;
+    system_.GetAxis("COMPD_CS|VERT_CS", 0, &direction);
+    if (direction == OAO_Down) Fail("its heights are depths, down from the surface; allowed: heights");
+    const char* name = nullptr;
+    const double metres = system_.GetTargetLinearUnits("COMPD_CS|VERT_CS", &name);
+    const std::optional<LengthUnit> unit = FindLengthUnit(metres);
+    return unit ? std::string(unit->name) : name == nullptr ? "" : name;
+  }
+
+  bool IsWebMercator() const {
+    const std::string name = LowerCase(system_.GetName() == nullptr ? "" : system_.GetName());
+    return name.find("pseudo-mercator") != std::string::npos ||
+           name.find("web mercator") != std::string::npos || name.find("web_mercator") != std::string::npos ||
+           name.find("auxiliary_sphere") != std::string::npos;
+  }
+
+  // Projections of large areas stretch: Web Mercator by 1 / cos(latitude). Measured in the middle of the grid on the
+  // ellipsoid of its own system.
+  void CheckScale(const LengthUnit& length) const {
+    if (!system_.IsProjected()) return;
+    OGRSpatialReference flat = system_;
+    if (flat.IsCompound()) flat.StripVertical();
+    flat.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::unique_ptr<OGRSpatialReference> globe(flat.CloneGeogCS());
+    if (globe == nullptr) return;
+    globe->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::unique_ptr<OGRCoordinateTransformation> to_globe(
+        OGRCreateCoordinateTransformation(&flat, globe.get()));
+    if (to_globe == nullptr) return;
+    constexpr double kStepM = 50.0;
+    const double step = kStepM / length.m, x = CentreX(), y = CentreY();
+    std::array<double, 5> xs{x, x - step, x + step, x, x}, ys{y, y, y, y - step, y + step};
+    std::array<int, 5> done{};
+    const double radians = globe->GetAngularUnits(nullptr);
+    to_globe->Transform(5, xs.data(), ys.data(), nullptr, done.data());
+    const bool all = std::all_of(done.begin(), done.end(), [](int ok) { return ok != 0; });
+    if (!all || !std::all_of(xs.begin(), xs.end(), [](double v) { return std::isfinite(v); })) {
+      if (IsWebMercator()) Fail("in Web Mercator; allowed: a grid whose metres are metres on the ground");
+      return;
+    }
+    const auto ground_m = [&](int from, int to) {
+      const double a = globe->GetSemiMajor(), b = globe->GetSemiMinor(), e2 = 1.0 - b * b / (a * a);
+      const double latitude = radians * ys[0], s = std::sin(latitude), w2 = 1.0 - e2 * s * s;
+      const double north_m = a * (1.0 - e2) / (w2 * std::sqrt(w2)) * radians * (ys[to] - ys[from]);
+      const double east_m = a / std::sqrt(w2) * std::cos(latitude) * radians *
+                            std::remainder(xs[to] - xs[from], 2.0 * std::numbers::pi / radians);
+      return std::hypot(north_m, east_m);
+    };
+    const double along_x = ground_m(1, 2) / (2.0 * kStepM), along_y = ground_m(3, 4) / (2.0 * kStepM);
+    const double error = std::max(std::abs(along_x - 1.0), std::abs(along_y - 1.0));
+    if (error <= kMaxScaleError && !IsWebMercator()) return;
+    const Degrees at{radians / kDegree * xs[0], radians / kDegree * ys[0]};
+    Fail(fmt::format(
+        "a metre of '{}' is {:.3g} x {:.3g} m on the ground there; allowed: within {:g} %, not Web "
+        "Mercator: {}",
+        system_.GetName(), along_x, along_y, 100.0 * kMaxScaleError, Reprojected(at)));
+  }
+
+  GDALDataset& dataset_;
+  const std::filesystem::path& file_;
+  const GridTerrainSpec& spec_;
+  std::array<double, 6> transform_{};  // x = t0 + t1 column + t2 row, y = t3 + t4 column + t5 row
+  OGRSpatialReference system_;
+  std::string prj_file_, prj_height_;
+};
+
+}  // namespace
+
+RasterUnits UnitsOf(GDALDataset& dataset, const std::filesystem::path& file, const GridTerrainSpec& spec) {
+  return Reference(dataset, file, spec).Units();
+}
+
+std::string PrjBeside(const std::filesystem::path& file) {
+  std::error_code error;
+  for (const char* ending : {".prj", ".PRJ", ".Prj"}) {
+    std::filesystem::path prj = file;
+    if (std::filesystem::exists(prj.replace_extension(ending), error)) return prj.string();
+  }
+  return "";
+}
+
+}  // namespace ed3r
