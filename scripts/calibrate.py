@@ -25,11 +25,13 @@ from calibration import flights, record, waves  # noqa: E402
 
 FOLDER = flights.ROOT / "sweeps/calibration"
 # What flies: points, missions each, warm-up missions each, and what points: new ones (far around the best so far, or close; or
-# where most quantities are expected to be equivalent), or once more the nearest so far.
+# where most quantities are expected to be equivalent), or once more the nearest so far, or those of them that are not ruled out
+# and of which most quantities are expected to be equivalent.
 # Every wave has seeds of its own; waves of points that fly again judge, on more missions.
 WAVES = ((140, 112, 8, "wide"), (100, 168, 8, "wide"), (60, 336, 12, "wide"), (28, 840, 16, "again"), (40, 336, 12, "close"),
-         (26, 560, 12, "again"), (24, 560, 12, "equivalent"))
-JUDGING = (6,)  # of these waves worlds are kept, and of the last of them the default
+         (26, 560, 12, "again"), (24, 560, 12, "equivalent"), (30, 560, 30, "equivalent"), (30, 560, 30, "equivalent"),
+         (8, 2000, 60, "most equivalent"))
+JUDGING = (6, 10)  # of these waves worlds are kept, and of the last of them the default
 SEED = 20261128
 STEPS = ("waves", "freeze", "check", "predict")
 CHECKED_POINTS = 3  # of each wave
@@ -70,6 +72,9 @@ class Search:
         count, _, _, kind = WAVES[number - 1]
         if kind == "again":
             return [record.point_of(row) for row in self.nearest(count)]
+        if kind == "most equivalent":
+            from calibration.equivalence import most_equivalent
+            return most_equivalent(self.rows, self.nearest(len(self.rows)), count, SEED + number)
         if kind == "equivalent":
             from calibration.equivalence import equivalent_points
             return equivalent_points(self.rows, count, SEED + number)

@@ -38,10 +38,10 @@ struct EnumNames<ViewNoise> {
 
 // Response of one detection model.
 struct ResponseConfig {
-  double half_signal = 5.29e-5;
-  double slope = 5.42;
-  double ceiling = 0.93;
-  double view_sigma = 0.44;
+  double half_signal = 5.67e-5;
+  double slope = 5.04;
+  double ceiling = 0.935;
+  double view_sigma = 0.415;
   double frame_sigma = 0.3;
   double distractor_gain = 1.0;
 
@@ -84,22 +84,22 @@ struct PerceptionConfig {
   PerceptionTier tier = PerceptionTier::kProfile;
   double frame_threshold = 0.5;
   double fire_weight = 1.0;
-  double smoke_weight = 0.489;
-  double haze_range_m = 227.0;
-  double distractors_per_km2 = 122.0;
+  double smoke_weight = 0.55;
+  double haze_range_m = 206.0;
+  double distractors_per_km2 = 130.0;
   double distractor_radius_m = 2.5;
-  double distractor_weight = 1.92;
-  double distractor_radius_sigma = 0.985;
-  double distractor_tilt_deg = 73.5;
-  double distractor_tilt_width_deg = 1.2;
+  double distractor_weight = 2.12;
+  double distractor_radius_sigma = 0.958;
+  double distractor_tilt_deg = 72.6;
+  double distractor_tilt_width_deg = 2.35;
   ViewNoise view_noise = ViewNoise::kKept;
   ResponseConfig full;
-  ResponseConfig quantized{.half_signal = 7.19e-5,
-                           .slope = 4.06,
-                           .ceiling = 0.89,
-                           .view_sigma = 0.616,
+  ResponseConfig quantized{.half_signal = 8.45e-5,
+                           .slope = 3.78,
+                           .ceiling = 0.895,
+                           .view_sigma = 0.581,
                            .frame_sigma = 0.6,
-                           .distractor_gain = 0.342};
+                           .distractor_gain = 0.389};
   RenderConfig render;
   DetectorConfig detector;
 

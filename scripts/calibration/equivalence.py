@@ -6,8 +6,8 @@ from scipy.stats import norm
 from calibration import record
 from calibration.emulator import Emulator
 from calibration.evidence import EVIDENCE, PRINTED, room
-from calibration.space import points_of
-from calibration.waves import proposals, spread_out
+from calibration.space import points_of, units_of
+from calibration.waves import CUT, apart, proposals, spread_out
 
 ROUNDS, KEPT, TRIED = 4, 400, 30000
 NEAR = (0.01, 0.03, 0.08)  # how far from the best of a round the next one looks, in units of the cube
@@ -55,3 +55,16 @@ def equivalent_points(rows, count, seed, say=print):
     say(f"expected of the best: {np.sort(expected)[-1]:.1f} of {len(PRINTED)} equivalent, of the {KEPT}th best "
         f"{np.sort(expected)[-KEPT]:.1f}", flush=True)
     return points_of(spread_out(best, count, generator))
+
+
+def most_equivalent(rows, flown, count, seed):
+    """Of the rows `flown` that are not ruled out: half where the emulators expect most to be equivalent (their own count would
+    favour the lucky), half spread over the next of them."""
+    known = record.flown(rows)
+    emulator = Emulator([record.point_of(row) for row in known], [record.measures_of(row) for row in known])
+    points = [record.point_of(row) for row in flown if row["implausibility"] < CUT]
+    expected = expected_equivalents(emulator, units_of(points))
+    order = np.argsort(-expected, kind="stable")
+    best, next_ = order[:count // 2], order[count // 2:4 * count]
+    others = next_[apart(units_of([points[i] for i in next_]), count - len(best), np.random.default_rng(seed))]
+    return [points[i] for i in (*best, *others)]

@@ -8,10 +8,9 @@ Read from a report of sweeps/matched.yaml (metrics.csv). Written beside it:
 """
 
 import csv
-import math
 
 import numpy as np
-from scipy.stats import rankdata
+from scipy.stats import fisher_exact, norm, rankdata
 
 from calibration.space import SPACE
 
@@ -28,14 +27,15 @@ SURE = 0.05
 
 
 def read_metrics(path):
-    """{world: {arm: {metric: (value, number)}}}"""
+    """{world: {arm: {metric: (value, number, lower end, upper end of the 95 % interval)}}}"""
     worlds = {}
     with open(path, newline="") as file:
         for row in csv.DictReader(file):
             if row["stage"] != "online" or "@" not in row["arm"] or not row["value"]:
                 continue
             arm, world = row["arm"].split("@")
-            worlds.setdefault(world, {}).setdefault(arm, {})[row["metric"]] = (float(row["value"]), int(row["n"]))
+            worlds.setdefault(world, {}).setdefault(arm, {})[row["metric"]] = (
+                float(row["value"]), int(row["n"]), *(float(row[end]) if row[end] else float("nan") for end in ("lo", "hi")))
     return worlds
 
 
@@ -54,15 +54,21 @@ def effects_of(arms):
     return effects
 
 
+def surely_better(arms, other, metric, more):
+    """Whether the intervals of the two do not touch, which asks more than a paired difference would."""
+    mine, theirs = arms[ARM][metric], arms[other][metric]
+    return mine[2] > theirs[3] if more else mine[3] < theirs[2]
+
+
 def second_implausibility(arms):
-    """The farther of the two rates from the paper's, in standard errors of both experiments; ours as a share of missions that
-    may show none (one half added)."""
+    """The farther of the two rates from the paper's: the chance of Fisher's exact test on the missions of both, as the standard
+    errors that have it."""
     worst = 0.0
     for metric, paper in SECOND:
-        pct, n = arms[ARM][metric]
-        share, printed = (pct / 100.0 * n + 0.5) / (n + 1.0), paper / 100.0
-        error = 100.0 * math.sqrt(share * (1.0 - share) / n + printed * (1.0 - printed) / PAPER_MISSIONS)
-        worst = max(worst, abs(100.0 * share - paper) / error)
+        pct, n = arms[ARM][metric][:2]
+        ours, printed = round(pct / 100.0 * n), round(paper / 100.0 * PAPER_MISSIONS)
+        chance = fisher_exact([[ours, n - ours], [printed, PAPER_MISSIONS - printed]])[1]
+        worst = max(worst, float(norm.isf(min(chance, 1.0) / 2.0)))
     return worst
 
 
@@ -80,15 +86,17 @@ def rank_correlations(points, values):
 
 
 def share_lines(worlds, left):
-    lines = [f"In how many of {len(worlds)} worlds ED3R-75 is better (in brackets: of the {len(left)} that are not ruled out)", "",
-             f"{'':<12}" + "".join(f"{word:>14}" for _, word, _ in COMPARED)]
+    lines = [f"In how many of {len(worlds)} worlds ED3R-75 is better by its mean (in brackets: of the {len(left)} that are not ruled out),",
+             "and in how many by intervals that do not touch", "",
+             f"{'':<12}" + "".join(f"{word:>18}" for _, word, _ in COMPARED)]
     effects = {world: effects_of(arms) for world, arms in worlds.items()}
     for other in OTHERS:
         cells = []
-        for _, word, _ in COMPARED:
+        for metric, word, more in COMPARED:
             better = [world for world in worlds if effects[world][f"{word} against {other}"] > 0.0]
-            cells.append(f"{len(better)} ({sum(world in left for world in better)})")
-        lines.append(f"{other:<12}" + "".join(f"{cell:>14}" for cell in cells))
+            surely = sum(surely_better(arms, other, metric, more) for arms in worlds.values())
+            cells.append(f"{len(better)} ({sum(world in left for world in better)}), {surely}")
+        lines.append(f"{other:<12}" + "".join(f"{cell:>18}" for cell in cells))
     return lines
 
 

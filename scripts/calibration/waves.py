@@ -9,14 +9,18 @@ from calibration.space import SPACE, points_of, space_filling, units_of
 CUT = 3.0  # a point is ruled out where it is farther than this from the paper's value, in standard deviations
 
 
-def spread_out(units, count, generator):
-    """`count` rows that keep apart from one another: each next one is the farthest from those chosen."""
+def apart(units, count, generator):
+    """Indices of `count` rows that keep apart from one another: each next one is the farthest from those chosen."""
     chosen = [int(generator.integers(len(units)))]
     nearest = np.full(len(units), np.inf)
     while len(chosen) < count:
         nearest = np.minimum(nearest, ((units - units[chosen[-1]]) ** 2).sum(axis=1))
         chosen.append(int(nearest.argmax()))
-    return units[chosen]
+    return chosen
+
+
+def spread_out(units, count, generator):
+    return units[apart(units, count, generator)]
 
 
 # How near to the best points the next are looked for, and by what the best are told: in all quantities but one, or in all.

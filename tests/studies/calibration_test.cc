@@ -77,7 +77,7 @@ TEST(CalibrationTest, TheFrozenPointIsOfTheRecord) {
   const Record record{ParseCsv(Content(kFolder + "calibration/record.csv"), "record.csv")};
   const Record matched{ParseCsv(Content(kFolder + "calibration/matched.csv"), "matched.csv")};
   const std::size_t wave = record.Column("wave"), frozen = record.Column("frozen");
-  constexpr int kJudging = 6;
+  constexpr int kJudging = 10;
   int marked = 0;
   for (std::size_t i = 1; i < record.rows.size(); ++i) {
     const CsvRow& row = record.rows[i];
