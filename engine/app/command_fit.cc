@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -8,6 +9,7 @@
 #include "engine/app/perception_looks.h"
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/core/message.h"
 #include "studies/figures/draw.h"
 #include "studies/fit/fit.h"
 #include "studies/fit/report.h"
@@ -21,6 +23,7 @@ struct Options {
   SelfCheckOptions self_check{.model = "momentum", .truth = {}, .fits = 0, .log = {}};
   std::string perception;  // run directory
   std::vector<std::string> set;
+  std::string battery;
   std::string out;
   bool json = false;
   bool no_figures = false;
@@ -49,6 +52,16 @@ int FitPerception(const Options& options) {
   return kDone;
 }
 
+int BatteryOf(const std::string& text) {
+  if (text == "all") return kAllBatteries;
+  int number = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || stop != text.data() + text.size() || number < 0 || number > 255)
+    throw UserError(
+        OneLine(fmt::format("--battery {}: expected all, or a number of a battery, 0 .. 255", text)));
+  return number;
+}
+
 int Fit(Options options) {
   if (!options.perception.empty()) return FitPerception(options);
   if (options.self_check.fits > 0) return SelfCheck(options);
@@ -60,6 +73,7 @@ int Fit(Options options) {
       throw UserError(fmt::format("--set {}: expected KEY=VALUE, e.g. robot.mass_kg=3.68", setting));
     options.fit.robot.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
   }
+  if (!options.battery.empty()) options.fit.reading.battery = BatteryOf(options.battery);
   const FitReport report = RunFit(options.fit);
   DrawResult drawn;
   if (!options.out.empty()) {
@@ -80,14 +94,20 @@ Command AddFit(Program& program) {
   auto options = std::make_shared<Options>();
   CommandLine parser =
       program.AddCommand("fit", "Energy parameters fitted to flight logs: values, 95 % intervals, residuals");
-  parser.Option("LOG", options->fit.logs, "Flight logs (CSV)");
-  parser.Option("--format", options->fit.format, "Columns: m100 | ardupilot | FILE.yaml; default m100");
+  parser.Option("LOG", options->fit.logs,
+                "Flight logs, told by content: PX4 .ulg, ArduPilot .bin, AirData (DJI) CSV, CSV");
+  parser.Option("--format", options->fit.format,
+                "Columns: m100 | ardupilot | px4 | dji | FILE.yaml; default by content");
   parser.Option("--evaluate", options->fit.evaluate, "Logs that only judge the fit").OneValue();
   parser.Option("--evaluate-format", options->fit.evaluate_format, "Their columns; default those of LOG");
   parser
       .Option("--perception", options->perception,
               "Instead of LOG: fit the fast perception tier to a run of the pixel tier (run directory)")
       .Excludes("LOG");
+  parser.Flag("--skip-bad", options->fit.reading.skip_bad,
+              "Leave out and count rows or messages that cannot be read (at most 10 %)");
+  parser.Option("--battery", options->battery,
+                "Of a raw log with several: NUMBER | all (sum of their powers)");
   parser.Option("--set", options->set, "robot.KEY=VALUE of the airframe that flew").OneValue();
   parser
       .Option("--out", options->out,

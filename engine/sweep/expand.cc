@@ -66,8 +66,9 @@ class StageExpander {
   const std::string& AxesAt() const { return axes_.empty() ? at_ : axes_[0].at; }
   std::int64_t Size() const { return Combinations(axes_); }
 
-  void Expand(const std::vector<Setting>& fixed, const std::vector<Setting>& overrides,
+  void Expand(const std::vector<Setting>& written, const std::vector<Setting>& overriding,
               const std::string& top_folder) {
+    const std::vector<Setting> fixed = WithoutSwept(written), overrides = WithoutSwept(overriding);
     CheckOffAxes(fixed, overrides);
     fixed_ = MergedSettings(fixed, overrides);
     Arm common;
@@ -82,6 +83,14 @@ class StageExpander {
   }
 
  private:
+  // What an airframe file says of a key on an axis is its default.
+  std::vector<Setting> WithoutSwept(const std::vector<Setting>& settings) const {
+    std::vector<Setting> kept;
+    for (const Setting& setting : settings)
+      if (!setting.of_airframe_file || FindOnAxes(axes_, setting.key) == nullptr) kept.push_back(setting);
+    return kept;
+  }
+
   void CheckOffAxes(const std::vector<Setting>& fixed, const std::vector<Setting>& overrides) const {
     for (const Setting& setting : overrides) {
       if (const Setting* axis = FindOnAxes(axes_, setting.key))

@@ -101,9 +101,10 @@ std::vector<Setting> ReadAirframeFile(const std::string& path, const std::string
     FailAt(at,
            fmt::format("robot: '{}' is not a file; allowed: an airframe file as 'ed3r fit --out' writes it",
                        path));
-  const std::vector<Setting> settings = SettingReader(FolderOf(path), FolderOf(path), false, {})
-                                            .ReadMap(ReadYamlFile(path).root, "an airframe file");
-  for (const Setting& setting : settings) {
+  std::vector<Setting> settings = SettingReader(FolderOf(path), FolderOf(path), false, {})
+                                      .ReadMap(ReadYamlFile(path).root, "an airframe file");
+  for (Setting& setting : settings) {
+    setting.of_airframe_file = true;
     const std::string subject = setting.key.substr(0, setting.key.find('.'));
     if (subject != "robot" && subject != "energy" && subject != "environment" && subject != "cpu")
       FailAt(setting.at,

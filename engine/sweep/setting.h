@@ -17,10 +17,11 @@ namespace ed3r {
 using ValueCheck = std::function<std::string(const std::string& key, const std::string& value)>;
 
 struct Setting {
-  std::string key;        // full: "mission.strategy" even where "strategy" was written
-  std::string text;       // read by SetParameter; a file is a path that can be opened from here
-  std::string canonical;  // the same wherever the sweep lies: differs from text for files only
-  std::string at;         // where the value was written
+  std::string key;                // full: "mission.strategy" even where "strategy" was written
+  std::string text;               // read by SetParameter; a file is a path that can be opened from here
+  std::string canonical;          // the same wherever the sweep lies: differs from text for files only
+  std::string at;                 // where the value was written
+  bool of_airframe_file = false;  // a default that an axis may vary: nobody wrote it beside the axis
 };
 
 // `strategy` is short for mission.strategy; all other keys are written in full.

@@ -11,19 +11,21 @@
 #include <vector>
 
 #include "studies/fit/assessment.h"
+#include "studies/fit/determination.h"
 #include "studies/fit/uncertainty.h"
 
 namespace ed3r {
 
 struct FitOptions {
   std::vector<std::string> logs = {};
-  std::string format = "m100";  // LoadLogFormat: built-in name or YAML file
+  std::string format = {};  // LoadLogFormat: built-in name or YAML file; "" = by the log's content
   std::vector<std::string> evaluate = {};
   std::string evaluate_format = {};  // "" = format
   // robot.* keys over those of the format, e.g. {"robot.mass_kg", "1.3"}: the airframe that flew. Other keys
   // throw.
   std::vector<std::pair<std::string, std::string>> robot = {};
   double gravity_mps2 = 9.8;
+  LogReading reading = {};
 };
 
 struct ModelReport {
@@ -34,6 +36,7 @@ struct ModelReport {
   Assessment held_out;                  // each flight by a fit without it
   std::optional<Assessment> evaluated;  // flights of FitOptions::evaluate, by the fit to all of `logs`
   Predictions held_out_w;               // per group and row
+  Determination determination;          // what of it may be flown
 };
 
 struct FitReport {
@@ -43,14 +46,15 @@ struct FitReport {
   bool segments = false;
   std::optional<FlightLog> evaluate_log;
   std::vector<ModelReport> models;
-  // Smallest rms residual of held-out rows. Not the energy per flight: there, errors in hover and cruise
+  // Smallest rms residual of held-out rows among the models that may be flown (Determination::Usable). Not the energy per flight: there, errors in hover and cruise
   // cancel.
   std::size_t best = 0;
   HoverScaling scaling;
   double seconds = 0.0;  // wall time of the fit, reading included; not in the JSON's results
 };
 
-// Throws UserError for bad input (log, format, key).
+// Throws UserError for bad input: log, format, key, an airframe without mass or propellers, units that cannot be, power
+// that was not measured, a log that no model explains.
 FitReport RunFit(const FitOptions& options);
 
 }  // namespace ed3r

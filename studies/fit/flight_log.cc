@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -10,6 +11,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/utf8.h"
+#include "studies/fit/unit_check.h"
 
 namespace ed3r {
 namespace {
@@ -24,7 +26,7 @@ struct Range {
 // Reads one meaning of the format from a table, with its unit factor; absent meanings read as a constant.
 class Source {
  public:
-  Source(const CsvTable& table, const LogFormat& format, const std::string& meaning, Range range,
+  Source(const LogTable& table, const LogFormat& format, const std::string& meaning, Range range,
          double otherwise = 0.0)
       : table_(table), range_(range), otherwise_(otherwise) {
     if (!format.Has(meaning)) return;
@@ -44,13 +46,18 @@ class Source {
   }
 
  private:
-  const CsvTable& table_;
+  const LogTable& table_;
   Range range_;
   double otherwise_;
   double factor_ = 1.0;
   std::size_t column_ = 0;
   bool there_ = false;
 };
+
+std::string Lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
 
 struct RawFlight {
   std::string id;
@@ -63,9 +70,10 @@ struct RawFlight {
 // All flights of one table, rows on the ground included.
 class TableReader {
  public:
-  TableReader(const CsvTable& table, const LogFormat& format)
+  TableReader(const LogTable& table, const LogFormat& format, const LogReading& reading)
       : table_(table),
         format_(format),
+        reading_(reading),
         time_(table, format, "time_s", {-1e12, 1e12}),
         power_(table, format, "power_w", {-1e5, 1e5}),
         voltage_(table, format, "voltage_v", {0, 1e3}),
@@ -76,8 +84,8 @@ class TableReader {
         density_(table, format, "air_density_kgm3", {0.3, 2}, format.air_density_kgm3),
         payload_(table, format, "payload_kg", {0, 500}),
         mass_(table, format, "mass_kg", {0.05, 500}) {
-    for (const auto& [name, least] : format.in_flight)
-      gates_.push_back({table.Column(name, "in_flight"), least});
+    for (const auto& [name, condition] : format.in_flight)
+      gates_.push_back({table.Column(name, "in_flight"), condition});
     if (format.Has("flight")) flight_column_ = table.Column(format.columns.at("flight"), "flight");
   }
 
@@ -97,16 +105,39 @@ class TableReader {
         flights.push_back(
             {.id = id, .rows = {}, .altitude_m = {}, .recorded_climb_mps = {}, .in_flight = {}});
       }
-      AddRow(row, flights.back());
+      try {
+        AddRow(row, flights.back());
+      } catch (const UserError& error) {
+        if (!reading_.skip_bad)
+          throw UserError(std::string(error.what()) + "; --skip-bad leaves such rows out");
+        if (bad_++ == 0) first_bad_ = error.what();
+      }
     }
+    if (bad_ + table_.bad() >
+        kMaxBadShare * static_cast<double>(table_.rows() + static_cast<std::size_t>(table_.bad())))
+      throw UserError(fmt::format(
+          "{}: --skip-bad would leave out {} of {} rows, at most {:g} % are allowed{}", table_.path(),
+          bad_ + table_.bad(), table_.rows() + static_cast<std::size_t>(table_.bad()), 100.0 * kMaxBadShare,
+          first_bad_.empty() ? "" : "; the first: " + first_bad_));
     return flights;
   }
+
+  int bad() const { return bad_; }
+  const std::string& first_bad() const { return first_bad_; }
 
  private:
   struct Gate {
     std::size_t column;
-    double least;
+    FlightCondition condition;
   };
+
+  bool Passes(std::size_t row, const Gate& gate) const {
+    const std::vector<std::string>& words = gate.condition.words;
+    if (words.empty()) return table_.Number(row, gate.column, -1e300, 1e300) >= gate.condition.least;
+    const std::string cell = Lower(table_.Cell(row, gate.column));
+    return std::any_of(words.begin(), words.end(),
+                       [&](const std::string& word) { return Lower(word) == cell; });
+  }
 
   void AddRow(std::size_t row, RawFlight& flight) {
     FlightRow values;
@@ -120,25 +151,31 @@ class TableReader {
     values.climb_mps = climb_(row);
     values.density_kgm3 = density_(row);
     values.mass_kg = mass_.there() ? mass_(row) : format_.robot.mass_kg + payload_(row);
+    values.source_row = row;
+    const double recorded_altitude =
+        altitude_.there() ? altitude_(row) : std::numeric_limits<double>::quiet_NaN();
+    const bool in_flight =
+        !table_.OnGround(row) &&
+        std::all_of(gates_.begin(), gates_.end(), [&](const Gate& gate) { return Passes(row, gate); });
     flight.rows.push_back(values);
     flight.recorded_climb_mps.push_back(climb_.there() ? values.climb_mps
                                                        : std::numeric_limits<double>::quiet_NaN());
-    flight.altitude_m.push_back(altitude_.there() ? altitude_(row)
-                                                  : std::numeric_limits<double>::quiet_NaN());
-    flight.in_flight.push_back(std::all_of(gates_.begin(), gates_.end(), [&](const Gate& gate) {
-      return table_.Number(row, gate.column, -1e300, 1e300) >= gate.least;
-    }));
+    flight.altitude_m.push_back(recorded_altitude);
+    flight.in_flight.push_back(in_flight);
   }
 
-  const CsvTable& table_;
+  const LogTable& table_;
   const LogFormat& format_;
+  const LogReading& reading_;
   Source time_, power_, voltage_, current_, airspeed_, climb_, altitude_, density_, payload_, mass_;
   std::vector<Gate> gates_;
   std::size_t flight_column_ = 0;
+  int bad_ = 0;
+  std::string first_bad_;
 };
 
 // Climb rate of each row: slope of the straight line through the altitudes within +-window.
-void ClimbFromAltitude(double window_s, RawFlight& flight) {
+std::vector<double> AltitudeSlope(double window_s, const RawFlight& flight) {
   const std::vector<FlightRow>& rows = flight.rows;
   std::vector<double> slope(rows.size(), 0.0);
   std::size_t begin = 0, end = 0;
@@ -159,7 +196,20 @@ void ClimbFromAltitude(double window_s, RawFlight& flight) {
     }
     slope[i] = variance > 0.0 ? covariance / variance : 0.0;
   }
-  for (std::size_t i = 0; i < rows.size(); ++i) flight.rows[i].climb_mps = slope[i];
+  return slope;
+}
+
+// Refuses a recorded climb rate that has not the sign or the size of what the altitude does.
+void CheckClimb(const RawFlight& flight, const LogTable& table, const LogFormat& format) {
+  const std::vector<double> slopes = AltitudeSlope(format.climb_window_s, flight);
+  std::vector<double> recorded_mps, slope_mps;
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    if (!flight.in_flight[i] || std::isnan(flight.recorded_climb_mps[i]) || std::isnan(slopes[i])) continue;
+    recorded_mps.push_back(flight.recorded_climb_mps[i]);
+    slope_mps.push_back(slopes[i]);
+  }
+  if (recorded_mps.empty()) return;
+  CheckClimbAgainstAltitude(table.WhereRow(flight.rows.front().source_row), format, recorded_mps, slope_mps);
 }
 
 // |integral of the recorded climb rate - change of altitude| over the rows in flight.
@@ -198,10 +248,55 @@ double DurationS(const FlightLog& log) {
   return duration_s;
 }
 
-void CheckEnough(const std::vector<CsvTable>& tables, const FlightLog& log, LogUse use) {
-  const CsvTable& last = tables.back();
-  const int last_line = last.rows() == 0 ? 1 : last.Line(last.rows() - 1);
-  const std::string where = fmt::format("{}:{}:1: ", last.path(), last_line);
+// Puts a flight's rows in the air into the log; returns how far its recorded climb rate drifts from its altitude.
+double AddFlight(const LogTable& source, std::size_t table, RawFlight& raw, FlightLog& log) {
+  if (log.format.climb_from == ClimbFrom::kAltitude) {
+    const std::vector<double> slopes = AltitudeSlope(log.format.climb_window_s, raw);
+    for (std::size_t i = 0; i < slopes.size(); ++i) raw.rows[i].climb_mps = slopes[i];
+  } else if (log.format.Has("altitude_m")) {
+    CheckClimb(raw, source, log.format);
+  }
+  Flight flight{.id = raw.id, .rows = {}, .table = table};
+  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
+    if (raw.in_flight[i])
+      flight.rows.push_back(raw.rows[i]);
+    else
+      ++log.rows_on_ground;
+  }
+  if (flight.rows.size() < kMinFlightRows) {
+    ++log.short_flights;
+    return 0.0;
+  }
+  MarkOutliers(flight, log);
+  for (const FlightRow& row : flight.rows) log.hover_rows += IsHover(row, log.format) ? 1 : 0;
+  log.rows += static_cast<int>(flight.rows.size());
+  log.flights.push_back(std::move(flight));
+  return ClimbDriftM(raw);
+}
+
+// Refuses logs in which more than kMaxNoPowerShare of the rows in flight draw no power: there it was not measured.
+void CheckPowerInFlight(const std::vector<LogTable>& tables, const FlightLog& log) {
+  int without = 0;
+  const FlightRow* first = nullptr;
+  std::size_t table = 0;
+  for (const Flight& flight : log.flights)
+    for (const FlightRow& row : flight.rows) {
+      if (row.power_w > 0.0) continue;
+      if (without++ == 0) first = &row, table = flight.table;
+    }
+  if (without <= kMaxNoPowerShare * log.rows) return;
+  const bool power = log.format.Has("power_w");
+  const std::string meaning = power ? "power_w" : "current_a";
+  const std::size_t column = tables[table].Column(log.format.columns.at(meaning), meaning);
+  throw UserError(fmt::format("{}power was not measured in {} of {} rows in flight: the first is {}{}",
+                              tables[table].Where(first->source_row, column), without, log.rows,
+                              tables[table].Cell(first->source_row, column),
+                              power ? " W" : fmt::format(" A at {:.3g} W", first->power_w)));
+}
+
+void CheckEnough(const std::vector<LogTable>& tables, const FlightLog& log, LogUse use) {
+  const LogTable& last = tables.back();
+  const std::string where = last.rows() == 0 ? last.path() + ":1:1: " : last.WhereRow(last.rows() - 1);
   if (log.flights.empty())
     throw UserError(fmt::format("{}too few rows: no flight of at least {} rows", where, kMinFlightRows));
   if (use == LogUse::kEvaluate) return;
@@ -231,43 +326,26 @@ bool IsHover(const FlightRow& row, const LogFormat& format) {
          std::abs(row.climb_mps) <= format.hover_max_climb_mps;
 }
 
-FlightLog MakeFlightLog(const std::vector<CsvTable>& tables, const LogFormat& format, LogUse use) {
+FlightLog MakeFlightLog(const std::vector<LogTable>& tables, const LogFormat& format, LogUse use,
+                        const LogReading& reading) {
   ED3R_CHECK(!tables.empty(), "no tables");
   FlightLog log;
   log.format = format;
   double drift_m = 0.0;
-  for (const CsvTable& table : tables) {
-    log.files.push_back(table.path());
-    for (RawFlight& raw : TableReader(table, format).Read()) {
-      if (format.climb_from == ClimbFrom::kAltitude) ClimbFromAltitude(format.climb_window_s, raw);
-      Flight flight{.id = raw.id, .rows = {}};
-      for (std::size_t i = 0; i < raw.rows.size(); ++i) {
-        if (raw.in_flight[i])
-          flight.rows.push_back(raw.rows[i]);
-        else
-          ++log.rows_on_ground;
-      }
-      if (flight.rows.size() < kMinFlightRows) {
-        ++log.short_flights;
-        continue;
-      }
-      MarkOutliers(flight, log);
-      for (const FlightRow& row : flight.rows) log.hover_rows += IsHover(row, format) ? 1 : 0;
-      log.rows += static_cast<int>(flight.rows.size());
-      drift_m += ClimbDriftM(raw);
-      log.flights.push_back(std::move(flight));
-    }
+  for (std::size_t t = 0; t < tables.size(); ++t) {
+    CheckUnits(tables[t], format);
+    log.files.push_back(tables[t].path());
+    TableReader reader(tables[t], format, reading);
+    for (RawFlight& raw : reader.Read()) drift_m += AddFlight(tables[t], t, raw, log);
+    log.bad_rows += reader.bad() + tables[t].bad();
+    if (log.first_bad.empty()) log.first_bad = reader.first_bad();
+    for (const std::string& note : tables[t].notes())
+      if (std::find(log.notes.begin(), log.notes.end(), note) == log.notes.end()) log.notes.push_back(note);
   }
+  CheckPowerInFlight(tables, log);
   CheckEnough(tables, log, use);
   log.climb_drift_m = drift_m / static_cast<double>(log.flights.size());
   return log;
-}
-
-FlightLog ReadFlightLog(const std::vector<std::string>& paths, const LogFormat& format, LogUse use) {
-  if (paths.empty()) throw UserError("ed3r fit: no log file given");
-  std::vector<CsvTable> tables;
-  for (const std::string& path : paths) tables.push_back(CsvTable::Read(path));
-  return MakeFlightLog(tables, format, use);
 }
 
 }  // namespace ed3r

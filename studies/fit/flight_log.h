@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/csv_table.h"
 #include "studies/fit/log_format.h"
+#include "studies/flight_logs/log_table.h"
 
 namespace ed3r {
 
@@ -20,12 +20,14 @@ struct FlightRow {
   double density_kgm3 = 0.0;
   double mass_kg = 0.0;
   RowQuality quality = RowQuality::kGood;
+  std::size_t source_row = 0;  // of Flight::table
 };
 
 // Rows in strictly increasing time.
 struct Flight {
   std::string id;  // "file" or "file#flight"
   std::vector<FlightRow> rows;
+  std::size_t table = 0;  // index of the log that it came from
 
   double MassKg() const { return rows.front().mass_kg; }
 };
@@ -40,6 +42,9 @@ struct FlightLog {
   int spikes = 0;          // power above twice the flight's median
   int short_flights = 0;   // flights of fewer than kMinFlightRows rows, left out
   int hover_rows = 0;
+  int bad_rows = 0;                // left out because they could not be read (LogReading::skip_bad)
+  std::string first_bad;           // the message of the first of them
+  std::vector<std::string> notes;  // of the readers of raw logs
   // Mean over flights of |climb integrated from the recorded climb rate - climb by altitude|, where a log has
   // both: metres that the recorded climb rate drifts in a flight. NaN where it has not.
   double climb_drift_m = 0.0;
@@ -49,18 +54,17 @@ inline constexpr int kMinFlightRows = 20;
 inline constexpr int kMinLogRows = 200;
 inline constexpr double kMinLogS = 30.0;
 inline constexpr int kMinHoverRows = 20;
+inline constexpr double kMaxBadShare = 0.1;       // of the rows that skip_bad may leave out
+inline constexpr double kMaxNoPowerShare = 0.05;  // of the rows in flight whose power is 0 or below
 
 // Logs to fit must be long enough and hover; logs to evaluate need one flight.
 enum class LogUse { kFit, kEvaluate };
 
-// Reads the files as one log. Throws UserError naming file, line and column: a column that is missing, text
-// in a number, values out of range, time that does not increase, flights that are not contiguous, too few
-// rows, no hovering.
-FlightLog ReadFlightLog(const std::vector<std::string>& paths, const LogFormat& format,
-                        LogUse use = LogUse::kFit);
-// The same from tables in memory.
-FlightLog MakeFlightLog(const std::vector<CsvTable>& tables, const LogFormat& format,
-                        LogUse use = LogUse::kFit);
+// Logs as one. Throws UserError naming file, line and column: a column that is missing, text in a number, values out of
+// range, time that does not increase (with skip_bad such rows are left out and counted), units that cannot be
+// (unit_check.h), flights that are not contiguous, power that was not measured, too few rows, no hovering.
+FlightLog MakeFlightLog(const std::vector<LogTable>& tables, const LogFormat& format,
+                        LogUse use = LogUse::kFit, const LogReading& reading = {});
 
 bool IsHover(const FlightRow& row, const LogFormat& format);
 

@@ -21,7 +21,8 @@ struct BuiltIn {
   const char* yaml;
 };
 
-constexpr BuiltIn kBuiltIn[] = {{"m100", R"(# DJI Matrice 100, Rodrigues et al. 2021 (Scientific Data 8:155)
+constexpr BuiltIn kBuiltIn[] = {
+    {"m100", R"(# DJI Matrice 100, Rodrigues et al. 2021 (Scientific Data 8:155)
 columns:
   flight: flight
   time_s: time
@@ -46,7 +47,7 @@ notes:
   - climb rate is the slope of the altitude, because the recorded vertical speed drifts with airspeed
   - airframe from secondary sources (3.68 kg without payload, propellers of 0.34 m, TB47D battery); body size is approximate
 )"},
-                                {"ardupilot", R"(# ArduPilot quadrotor on four cells (dronekit-la-testdata)
+    {"ardupilot", R"(# ArduPilot quadrotor on four cells (dronekit-la-testdata)
 columns:
   time_s: time_s
   voltage_v: battery_voltage_v
@@ -56,9 +57,32 @@ columns:
   altitude_m: altitude_m
 in_flight: {throttle_0_1000: 100, altitude_m: 2}
 hover: {max_speed_mps: 1, max_climb_mps: 0.4}
+robot: {mass_kg: 1.816, propellers: 4, propeller_radius_m: 0.1}
 notes:
-  - mass and airframe are not recorded; robot.* defaults (the paper's Iris) stand in, and the efficiency scales with them
+  - mass and airframe are not recorded; the paper's Iris stands in, and the efficiency scales with it
   - ground speed stands in for airspeed
+)"},
+    {"px4", R"(# PX4 ULog (studies/flight_logs/px4_log.h)
+columns:
+  time_s: time_s
+  voltage_v: battery_voltage_v
+  current_a: battery_current_a
+  ground_speed_mps: ground_speed_mps
+  climb_mps: climb_mps
+  altitude_m: altitude_m
+hover: {max_speed_mps: 1, max_climb_mps: 0.4}
+notes:
+  - ground speed stands in for airspeed
+)"},
+    {"dji", R"(# DJI flight exported by AirData (studies/flight_logs/airdata_log.h)
+columns:
+  time_s: time_s
+  voltage_v: battery_voltage_v
+  current_a: battery_current_a
+  ground_speed_mps: ground_speed_mps
+  climb_mps: climb_mps
+  altitude_m: altitude_m
+hover: {max_speed_mps: 1, max_climb_mps: 0.4}
 )"}};
 
 const std::vector<std::string> kMeanings = {"flight",     "time_s",           "power_w",          "voltage_v",
@@ -141,7 +165,7 @@ class FormatReader {
     } else if (word == "air_density_kgm3") {
       format_.air_density_kgm3 = Number(entry, 0.3, 2);
     } else if (word == "in_flight") {
-      for (const Entry& least : Entries(entry)) format_.in_flight[least.key] = Number(least, -1e12, 1e12);
+      for (const Entry& condition : Entries(entry)) format_.in_flight[condition.key] = Condition(condition);
     } else if (word == "hover") {
       ReadHover(entry);
     } else if (word == "robot") {
@@ -149,6 +173,23 @@ class FormatReader {
     } else {
       ReadNotes(entry);
     }
+  }
+
+  // A number is a least value; a text, or a list of texts, are words.
+  static FlightCondition Condition(const Entry& entry) {
+    FlightCondition condition;
+    if (entry.value.kind == YamlNode::Kind::kList) {
+      for (const YamlNode& word : entry.value.items) condition.words.push_back(Text(entry.key, word));
+      if (condition.words.empty())
+        FailAt(entry.value.at, fmt::format("{}: a list of words was expected", entry.key));
+    } else if (const std::string& text = Text(entry.key, entry.value);
+               text.find_first_of("0123456789") != 0 && !text.starts_with('-') && !text.starts_with('.') &&
+               !text.starts_with('+')) {
+      condition.words.push_back(text);
+    } else {
+      condition.least = Number(entry, -1e12, 1e12);
+    }
+    return condition;
   }
 
   void ReadHover(const Entry& hover) {
@@ -165,6 +206,7 @@ class FormatReader {
     for (const Entry& field : Entries(robot)) {
       const std::string problem = SetParameter(config, "robot." + field.key, Text(field.key, field.value));
       if (!problem.empty()) FailAt(field.value.at, problem);
+      format_.robot_keys.insert(field.key);
     }
     format_.robot = config.robot;
   }
@@ -218,6 +260,11 @@ std::vector<std::string> BuiltInLogFormats() {
   std::vector<std::string> names;
   for (const BuiltIn& format : kBuiltIn) names.emplace_back(format.name);
   return names;
+}
+
+bool IsBuiltInLogFormat(const std::string& name) {
+  return std::any_of(std::begin(kBuiltIn), std::end(kBuiltIn),
+                     [&](const BuiltIn& format) { return name == format.name; });
 }
 
 }  // namespace ed3r

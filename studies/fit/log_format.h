@@ -1,5 +1,5 @@
-// How the columns of a telemetry log map to what the fit needs. Two formats are built in; others are YAML
-// files:
+// How the columns of a telemetry log map to what the fit needs. Four formats are built in (m100, ardupilot, px4, dji);
+// others are YAML files, described with an example in sweeps/OWN_DATA.md:
 //
 //   columns:                       # meaning -> name in the log's header
 //     time_s: time
@@ -14,13 +14,15 @@
 //   climb_from: altitude           # column (default) | altitude: slope of the altitude over +-climb_window_s
 //   climb_window_s: 1.2
 //   air_density_kgm3: 1.225
-//   in_flight: {throttle: 100}     # rows count only where each of these columns is at least the value
-//   hover: {max_speed_mps: 3, max_climb_mps: 0.4}   # what counts as hovering; wide enough for wind on an
-//   anemometer robot: {mass_kg: 3.68, ...}    # any robot.* parameter: the airframe that flew notes: [text,
-//   ...]             # repeated in the report
+//   in_flight: {throttle: 100, state: [flying, landing]}   # rows count only where each of these columns is at least
+//                                                          # the number, or is one of the words
+//   hover: {max_speed_mps: 3, max_climb_mps: 0.4}   # what counts as hovering; wide enough for wind on an anemometer
+//   robot: {mass_kg: 3.68, ...}    # any robot.* parameter: the airframe that flew
+//   notes: [text, ...]             # repeated in the report
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,12 @@ namespace ed3r {
 
 enum class ClimbFrom { kColumn, kAltitude };
 
+// What a column must say for a row to count as flown.
+struct FlightCondition {
+  double least = 0.0;
+  std::vector<std::string> words;  // where there are any, the cell is one of them, in whatever case
+};
+
 struct LogFormat {
   std::string name;
   std::map<std::string, std::string> columns;
@@ -37,10 +45,11 @@ struct LogFormat {
   ClimbFrom climb_from = ClimbFrom::kColumn;
   double climb_window_s = 1.2;
   double air_density_kgm3 = 1.225;
-  std::map<std::string, double> in_flight;
+  std::map<std::string, FlightCondition> in_flight;
   double hover_max_speed_mps = 3.0;
   double hover_max_climb_mps = 0.4;
   RobotConfig robot;
+  std::set<std::string> robot_keys;  // those of `robot` that somebody named; all others are the paper's Iris
   std::vector<std::string> notes;
 
   bool Has(const std::string& meaning) const { return columns.contains(meaning); }
@@ -52,5 +61,6 @@ LogFormat LoadLogFormat(const std::string& name_or_path);
 LogFormat ParseLogFormat(const std::string& name, const std::string& yaml);
 
 std::vector<std::string> BuiltInLogFormats();
+bool IsBuiltInLogFormat(const std::string& name);
 
 }  // namespace ed3r

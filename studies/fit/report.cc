@@ -4,10 +4,12 @@
 #include <fmt/ostream.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
 
+#include "engine/core/check.h"
 #include "engine/core/file.h"
 
 namespace ed3r {
@@ -37,6 +39,10 @@ void PrintLog(const FitReport& report, std::ostream& out) {
     fmt::print(
         out, "          recorded climb rate and altitude part by {:.1f} m a flight on average; {} is used\n",
         log.climb_drift_m, log.format.climb_from == ClimbFrom::kAltitude ? "altitude" : "the climb rate");
+  if (log.bad_rows > 0)
+    fmt::print(out, "          {} rows that could not be read left out (--skip-bad){}\n", log.bad_rows,
+               log.first_bad.empty() ? "" : "; the first: " + log.first_bad);
+  for (const std::string& note : log.notes) fmt::print(out, "          note: {}\n", note);
   for (const std::string& note : log.format.notes) fmt::print(out, "          note: {}\n", note);
   if (report.segments)
     fmt::print(out, "          fewer than {} flights: segments of {:g} s stand for flights\n", kMinGroups,
@@ -60,6 +66,17 @@ void PrintErrors(const FitReport& report, std::ostream& out, bool evaluated) {
   }
 }
 
+// What a sweep may not take from this model.
+void PrintDetermination(const ModelReport& model, std::ostream& out) {
+  const Determination& d = model.determination;
+  if (!d.Usable()) fmt::print(out, "  IMPOSSIBLE, none of it is written: {}\n", d.impossible);
+  if (!d.Usable()) return;
+  for (std::size_t i = 0; i < model.parameters.size(); ++i)
+    if (!d.not_determined[i].empty())
+      fmt::print(out, "  {} is not written: {}; the others are fitted again with its default {:g}\n",
+                 model.parameters[i].name, d.not_determined[i], d.values[i]);
+}
+
 void PrintParameters(const FitReport& report, std::ostream& out) {
   fmt::print(out, "\nParameters, 95 % intervals\n  {:<16} {:>10}  {:<22} {:<22} {}\n", "", "value",
              report.segments ? "by segments" : "by flights", "as if rows independent", "bounds");
@@ -77,6 +94,7 @@ void PrintParameters(const FitReport& report, std::ostream& out) {
                  bound.empty() ? "" : fmt::format("  AT ITS {} BOUND", bound == "lower" ? "LOWER" : "UPPER"));
     }
     if (!model.uncertainty.determined) fmt::print(out, "  (the data do not determine the free parameters)\n");
+    PrintDetermination(model, out);
   }
   fmt::print(out,
              "  Intervals by {}: any correlation within one is allowed for (wind, gusts, battery); they "
@@ -155,8 +173,80 @@ void PrintReport(const FitReport& report, std::ostream& out) {
   PrintHover(report, out);
 }
 
+namespace {
+
+std::string YamlEntryOf(const std::string& key, double value, const std::string& comment) {
+  return fmt::format("  {}: {:.6g}{}\n", key, value, comment.empty() ? "" : "  # " + comment);
+}
+
+// What was named of the airframe; what was not stays the engine's default and says so.
+std::string AirframeText(const FitReport& report) {
+  const LogFormat& format = report.log.format;
+  const RobotConfig& robot = format.robot;
+  const double mass_kg =
+      format.robot_keys.contains("mass_kg") ? robot.mass_kg : report.log.flights.front().MassKg();
+  std::string text = YamlEntryOf("mass_kg", mass_kg, "without payload") +
+                     YamlEntryOf("propellers", robot.propellers, "") +
+                     YamlEntryOf("propeller_radius_m", robot.propeller_radius_m, "");
+  for (const auto& [key, value] : {std::pair<const char*, double>{"height_m", robot.height_m},
+                                   {"width_m", robot.width_m},
+                                   {"depth_m", robot.depth_m},
+                                   {"battery_mah", robot.battery_mah},
+                                   {"battery_v", robot.battery_v}})
+    text += format.robot_keys.contains(key)
+                ? YamlEntryOf(key, value, "")
+                : fmt::format("  # {}: {:.6g} is the engine's default; yours was not named\n", key, value);
+  return text;
+}
+
+// The keys of a model that the data determine; the others as comments, with the default that stands for them.
+void AppendParameters(const ModelReport& model, std::string& robot_text, std::string& energy_text) {
+  const Determination& d = model.determination;
+  if (!d.Usable()) {
+    energy_text += fmt::format("  # {}: nothing written, {}\n", model.name, d.impossible);
+    return;
+  }
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    const std::string& key = model.parameters[i].key;
+    const std::string name = key.substr(key.find('.') + 1);
+    std::string& text = key.starts_with("robot.") ? robot_text : energy_text;
+    const Interval& interval = d.intervals[i];
+    if (!d.not_determined[i].empty())
+      text += fmt::format("  # {}: {}, not determined: {}; its default {:g} was held\n", name, model.name,
+                          d.not_determined[i], d.values[i]);
+    else
+      text += YamlEntryOf(
+          name, d.values[i],
+          fmt::format("{}, {}", model.name,
+                      std::isnan(interval.low) ? "at its lower bound" : "95 %: " + IntervalText(interval)));
+  }
+}
+
+const ModelReport& ModelOf(const FitReport& report, const std::string& name) {
+  const auto found = std::find_if(report.models.begin(), report.models.end(),
+                                  [&](const ModelReport& model) { return model.name == name; });
+  ED3R_CHECK(found != report.models.end(), name);
+  return *found;
+}
+
+// The paper's model as printed, unless its climb form is the best of all or the only one of the two that may be flown.
+std::string PaperFormOf(const FitReport& report) {
+  const bool printed = ModelOf(report, "paper").determination.Usable();
+  const bool climb = ModelOf(report, "paper-climb").determination.Usable();
+  return report.models[report.best].name == "paper-climb" || (climb && !printed) ? "paper-climb" : "paper";
+}
+
+// What the engine flies: the paper's model or the momentum model with interference; of those that may be flown, the one
+// with the smaller residuals.
+bool FliesPaper(const FitReport& report, const std::string& paper_form) {
+  const ModelReport &paper = ModelOf(report, paper_form), &momentum = ModelOf(report, "momentum");
+  if (!momentum.determination.Usable()) return true;
+  return paper.determination.Usable() && paper.held_out.rms_residual_w < momentum.held_out.rms_residual_w;
+}
+
+}  // namespace
+
 std::string FittedYaml(const FitReport& report) {
-  const RobotConfig& robot = report.log.format.robot;
   std::string text =
       fmt::format("# Airframe and energy parameters fitted to {} ({} flights, {} rows) by 'ed3r fit'.\n",
                   fmt::join(report.log.files, ", "), report.log.flights.size(), report.log.rows);
@@ -164,34 +254,15 @@ std::string FittedYaml(const FitReport& report) {
   for (const ModelReport& model : report.models)
     text += fmt::format(" {} {:.2f} %{}", model.name, model.held_out.median_error_pct,
                         &model == &report.models.back() ? ".\n" : ",");
-  const auto entry = [](const std::string& key, double value, const std::string& comment) {
-    return fmt::format("  {}: {:.6g}{}\n", key, value, comment.empty() ? "" : "  # " + comment);
-  };
-  // What the engine flies: the momentum model with interference, and the paper's as printed unless its climb
-  // form is the best of all.
-  const bool climb_form = report.models[report.best].name == "paper-climb";
   std::string robot_text, energy_text;
-  for (const ModelReport& model : report.models) {
-    if (model.name != (climb_form ? "paper-climb" : "paper") && model.name != "momentum") continue;
-    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
-      const std::string& key = model.parameters[i].key;
-      const bool of_robot = key.starts_with("robot.");
-      const std::string bound = BoundOf(model.estimate, i);
-      const std::string comment = model.name + ", " +
-                                  (bound.empty() ? "95 %: " + IntervalText(model.uncertainty.flights[i])
-                                                 : "at its " + bound + " bound");
-      (of_robot ? robot_text : energy_text) +=
-          entry(key.substr(key.find('.') + 1), model.estimate.values[i], comment);
-    }
-  }
-  text += "robot:\n" + entry("mass_kg", robot.mass_kg, "without payload") +
-          entry("propellers", robot.propellers, "") +
-          entry("propeller_radius_m", robot.propeller_radius_m, "") + entry("height_m", robot.height_m, "") +
-          entry("width_m", robot.width_m, "") + entry("depth_m", robot.depth_m, "") +
-          entry("battery_mah", robot.battery_mah, "") + entry("battery_v", robot.battery_v, "") + robot_text;
-  const bool paper = report.models[report.best].name.starts_with("paper");
-  return text + fmt::format("energy:\n  model: {}\n{}{}", paper ? "paper" : "momentum",
-                            climb_form ? "  vertical_form: climb\n" : "", energy_text);
+  const std::string paper_name = PaperFormOf(report);
+  for (const ModelReport& model : report.models)
+    if (model.name == paper_name || model.name == "momentum")
+      AppendParameters(model, robot_text, energy_text);
+  text += "robot:\n" + AirframeText(report) + robot_text;
+  return text + fmt::format("energy:\n  model: {}\n{}{}",
+                            FliesPaper(report, paper_name) ? "paper" : "momentum",
+                            paper_name == "paper-climb" ? "  vertical_form: climb\n" : "", energy_text);
 }
 
 void WriteFitOutputs(const FitReport& report, const std::string& directory) {

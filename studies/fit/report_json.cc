@@ -13,6 +13,8 @@ Json Pair(const Interval& interval) {
 }
 
 Json LogJson(const FlightLog& log) {
+  std::vector<std::string> notes = log.notes;
+  notes.insert(notes.end(), log.format.notes.begin(), log.format.notes.end());
   return {{"files", log.files},
           {"format", log.format.name},
           {"flights", log.flights.size()},
@@ -24,7 +26,8 @@ Json LogJson(const FlightLog& log) {
           {"spikes", log.spikes},
           {"climb_from", log.format.climb_from == ClimbFrom::kAltitude ? "altitude" : "column"},
           {"climb_drift_m", JsonNumber(log.climb_drift_m)},
-          {"notes", log.format.notes}};
+          {"bad_rows", log.bad_rows},
+          {"notes", notes}};
 }
 
 Json BinsJson(const std::vector<ResidualBin>& bins) {
@@ -79,6 +82,10 @@ Json ParametersJson(const ModelReport& model) {
                              {"ci95", Pair(model.uncertainty.flights[i])},
                              {"ci95_rows", Pair(model.uncertainty.rows[i])},
                              {"bounds", {spec.lower, spec.upper}},
+                             {"flown", model.determination.values[i]},
+                             {"not_determined", model.determination.not_determined[i].empty()
+                                                    ? Json(nullptr)
+                                                    : Json(model.determination.not_determined[i])},
                              {"at_bound", e.at_lower[i]   ? Json("lower")
                                           : e.at_upper[i] ? Json("upper")
                                                           : Json(nullptr)}};
@@ -96,18 +103,20 @@ Json ModelJson(const ModelReport& model) {
     correlation.push_back(row);
   }
   const Assessment& judged = model.evaluated ? *model.evaluated : model.held_out;
-  Json json = {{"median_flight_energy_error_pct", judged.median_error_pct},
-               {"meaning", model.meaning},
-               {"parameters", ParametersJson(model)},
-               {"correlation", correlation},
-               {"loss", e.loss == Loss::kTukey ? "tukey" : "huber"},
-               {"noise_w", e.scale_w},
-               {"rows", e.rows},
-               {"rows_beyond_low", e.beyond_low},
-               {"rows_beyond_high", e.beyond_high},
-               {"starts", e.starts},
-               {"starts_agreeing", e.starts_agreeing},
-               {"cross_validated", AssessmentJson(model.held_out)}};
+  Json json = {
+      {"median_flight_energy_error_pct", judged.median_error_pct},
+      {"meaning", model.meaning},
+      {"impossible", model.determination.Usable() ? Json(nullptr) : Json(model.determination.impossible)},
+      {"parameters", ParametersJson(model)},
+      {"correlation", correlation},
+      {"loss", e.loss == Loss::kTukey ? "tukey" : "huber"},
+      {"noise_w", e.scale_w},
+      {"rows", e.rows},
+      {"rows_beyond_low", e.beyond_low},
+      {"rows_beyond_high", e.beyond_high},
+      {"starts", e.starts},
+      {"starts_agreeing", e.starts_agreeing},
+      {"cross_validated", AssessmentJson(model.held_out)}};
   if (model.evaluated) json["evaluated"] = AssessmentJson(*model.evaluated);
   return json;
 }

@@ -108,7 +108,10 @@ TEST_F(M100Test, JsonAndParameterFileSayTheSame) {
   EXPECT_EQ(yaml["energy"]["model"].as<std::string>(), "momentum");
   EXPECT_NEAR(yaml["energy"]["induced_factor"].as<double>(), Model("momentum").estimate.values[1], 1e-5);
   EXPECT_DOUBLE_EQ(yaml["robot"]["mass_kg"].as<double>(), 3.68);
-  EXPECT_DOUBLE_EQ(yaml["robot"]["drag_vertical"].as<double>(), 5.0);
+  EXPECT_DOUBLE_EQ(yaml["robot"]["drag_horizontal"].as<double>(), 0.0)
+      << "a lower bound that the data hold on to";
+  EXPECT_FALSE(yaml["robot"]["drag_vertical"]) << "an upper bound is no value";
+  EXPECT_FALSE(Model("momentum-isolated").determination.Usable()) << "no efficiency is high enough";
 }
 
 TEST_F(M100Test, WritesItsOutputs) {

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <functional>
 
 #include "engine/core/check.h"
+#include "studies/flight_logs/read_log.h"
+#include "tests/flight_logs/complaint.h"
 
 namespace ed3r {
 namespace {
@@ -32,19 +33,9 @@ std::string LogText(const std::function<void(int, std::vector<std::string>&)>& c
 }
 
 FlightLog Read(const std::string& text, const std::string& format = kFormat) {
-  std::vector<CsvTable> tables;
+  std::vector<LogTable> tables;
   tables.push_back(CsvTable::Parse("log.csv", text));
   return MakeFlightLog(tables, ParseLogFormat("test.yaml", format));
-}
-
-// The one-line message of the UserError that reading throws; "" when it does not.
-std::string Complaint(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 std::string LogComplaint(const std::string& text, const std::string& format = kFormat) {
@@ -76,12 +67,17 @@ TEST(FlightLogTest, NamesFileLineAndColumnOfBadCells) {
       if (i == row) cells[cell] = value;
     });
   };
-  EXPECT_EQ(LogComplaint(with(3, 1, "4oo")), "log.csv:5:5: p: '4oo' is not a number");
-  EXPECT_EQ(LogComplaint(with(3, 1, "")), "log.csv:5:5: p: '' is not a number");
-  EXPECT_EQ(LogComplaint(with(3, 1, "nan")), "log.csv:5:5: p: 'nan' is not a number");
-  EXPECT_EQ(LogComplaint(with(0, 2, "-1")), "log.csv:2:7: v: -1 is out of range; allowed: 0 .. 60");
+  EXPECT_EQ(LogComplaint(with(3, 1, "4oo")),
+            "log.csv:5:5: p: '4oo' is not a number; --skip-bad leaves such rows out");
+  EXPECT_EQ(LogComplaint(with(3, 1, "")),
+            "log.csv:5:5: p: '' is not a number; --skip-bad leaves such rows out");
+  EXPECT_EQ(LogComplaint(with(3, 1, "nan")),
+            "log.csv:5:5: p: 'nan' is not a number; --skip-bad leaves such rows out");
+  EXPECT_EQ(LogComplaint(with(0, 2, "-1")),
+            "log.csv:2:7: v: -1 is out of range; allowed: 0 .. 60; --skip-bad leaves such rows out");
   EXPECT_EQ(LogComplaint(with(4, 0, "1.5")),
-            "log.csv:6:1: t: 1.5 does not come after 1.5; time must increase within a flight");
+            "log.csv:6:1: t: 1.5 does not come after 1.5; time must increase within a flight; --skip-bad "
+            "leaves such rows out");
   EXPECT_EQ(LogComplaint(with(4, 1, "1,2")), "log.csv:6:16: 6 cells, but the header names 5 columns");
   EXPECT_EQ(LogComplaint(with(120, 4, "b")),
             "log.csv:123:16: id: flight 'a' goes on after another flight; rows of a flight must be together");
@@ -94,7 +90,7 @@ TEST(FlightLogTest, NamesMissingColumnsWithTheNearest) {
             "log.csv:1:1: no column 'powr' (power_w); did you mean 'power'? columns: time, power, v, w, id");
   EXPECT_EQ(LogComplaint("", kFormat), "log.csv:1:1: empty file; a header line was expected");
   EXPECT_EQ(LogComplaint("t,t\n1,2\n"), "log.csv:1:3: column 't' is there twice");
-  EXPECT_EQ(Complaint([] { ReadFlightLog({"no/such.csv"}, LoadLogFormat("m100")); }),
+  EXPECT_EQ(Complaint([] { ReadLog("no/such.csv", {}); }),
             "no/such.csv: cannot be read: No such file or directory");
 }
 
@@ -115,7 +111,7 @@ TEST(FlightLogTest, RefusesLogsThatCannotBeFitted) {
 }
 
 TEST(FlightLogTest, LogsToEvaluateNeedNoHover) {
-  std::vector<CsvTable> tables;
+  std::vector<LogTable> tables;
   tables.push_back(
       CsvTable::Parse("log.csv", LogText([](int, std::vector<std::string>& cells) { cells[2] = "8"; })));
   EXPECT_EQ(MakeFlightLog(tables, ParseLogFormat("test.yaml", kFormat), LogUse::kEvaluate).hover_rows, 0);
@@ -169,7 +165,8 @@ TEST(LogFormatTest, NamesTheMistake) {
             "f.yaml:1:18: robot.mass_kg: '900' is not allowed; allowed: 0.05 .. 50 kg");
   EXPECT_EQ(complaint("units: {climb_mps: 0}"), "f.yaml:1:20: units: a factor of 0 loses the column");
   EXPECT_EQ(Complaint([] { LoadLogFormat("m10"); }),
-            "--format: 'm10' is neither a file nor a built-in format (m100, ardupilot); did you mean m100?");
+            "--format: 'm10' is neither a file nor a built-in format (m100, ardupilot, px4, dji); did you "
+            "mean m100?");
 }
 
 }  // namespace

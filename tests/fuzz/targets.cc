@@ -20,6 +20,7 @@
 #include "studies/detection/npy.h"
 #include "studies/fit/flight_log.h"
 #include "studies/fit/log_format.h"
+#include "studies/flight_logs/read_log.h"
 
 namespace ed3r {
 namespace {
@@ -98,8 +99,14 @@ void FuzzStemMap(std::string_view bytes) {
 }
 
 void FuzzLog(std::string_view bytes) {
-  const InputFile file(bytes, "log.csv");
-  Refusable([&] { ReadFlightLog({file.path()}, LoadLogFormat("ardupilot")); });
+  for (const bool skip_bad : {false, true})
+    Refusable([&] {
+      std::vector<LogTable> tables;
+      tables.push_back(ParseLog("log", std::string(bytes), {.skip_bad = skip_bad, .battery = 0}));
+      const char* formats[] = {"ardupilot", "px4", "ardupilot", "dji"};
+      MakeFlightLog(tables, LoadLogFormat(formats[static_cast<int>(tables.front().kind())]), LogUse::kFit,
+                    {.skip_bad = skip_bad, .battery = {}});
+    });
 }
 
 void FuzzLogFormat(std::string_view bytes) {

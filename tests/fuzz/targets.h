@@ -14,6 +14,7 @@ void FuzzSweep(std::string_view bytes);
 void FuzzWorld(std::string_view bytes);
 void FuzzGrid(std::string_view bytes);
 void FuzzStemMap(std::string_view bytes);
+// Whatever the content says it is: CSV, AirData, ULog, DataFlash.
 void FuzzLog(std::string_view bytes);
 void FuzzLogFormat(std::string_view bytes);
 void FuzzNpy(std::string_view bytes);

@@ -59,6 +59,30 @@ TEST(StagesTest, NamedVariantsNameTheirArms) {
   EXPECT_EQ(LoadText("name: x\nmissions: 1\nsweep: {robot.mass_kg: [1, 2]}\n").stages[0].arms[0].variant, "");
 }
 
+TEST(StagesTest, AnAirframesKeysCanBeSwept) {
+  const ScratchFolder scratch;
+  scratch.Write("drone.yaml", "robot: {mass_kg: 3.7, speed_mps: 7}\nenergy: {induced_factor: 1.4}\n");
+  const auto check = [](const SweepPlan& plan) {
+    ASSERT_EQ(plan.stages[0].arms.size(), 2u);
+    EXPECT_EQ(plan.stages[0].arms[0].config.robot.mass_kg, 4.0);
+    EXPECT_EQ(plan.stages[0].arms[1].config.robot.mass_kg, 5.0);
+    EXPECT_EQ(plan.stages[0].arms[1].config.robot.speed_mps, 7.0) << "all else is the file's";
+  };
+  check(LoadSweep(scratch.Write(
+      "x.yaml", "name: x\nmissions: 1\nset: {robot: drone.yaml}\nsweep: {robot.mass_kg: [4, 5]}\n")));
+  check(LoadSweep(scratch.Write("s.yaml",
+                                "name: x\nmissions: 1\nset: {robot: drone.yaml}\n"
+                                "stages:\n  - {name: a, sweep: {robot.mass_kg: [4, 5]}}\n")));
+  const std::string axis =
+      scratch.Write("axis.yaml", "name: x\nmissions: 1\nsweep: {robot.mass_kg: [4, 5]}\n");
+  check(LoadSweep(axis, {.set = {"robot=" + scratch.Path() + "/drone.yaml"}, .seed = {}, .missions = {}}));
+  // What somebody wrote beside the axis stays a contradiction.
+  EXPECT_THROW(LoadSweep(scratch.Write("y.yaml",
+                                       "name: x\nmissions: 1\nset: {robot.mass_kg: 3}\n"
+                                       "sweep: {robot.mass_kg: [4, 5]}\n")),
+               UserError);
+}
+
 TEST(StagesTest, ContradictionsAcrossLevelsAreRefused) {
   EXPECT_EQ(Refusal("name: x\nmissions: 1\nsweep: {robot.mass_kg: [1, 2]}\n"
                     "stages:\n  - {name: a, set: {robot.mass_kg: 1}}\n"),

@@ -1,0 +1,16 @@
+// CSV as people have it, to CSV as CsvTable reads it.
+//
+// Columns may be separated by semicolons or tabs (commas are then decimal commas), lines may end in CR, and lines that
+// begin with #, % or // or that say sep=; are comments. Characters are replaced one for one, so that lines and columns in
+// messages are those of the file.
+#pragma once
+
+#include <string>
+
+namespace ed3r {
+
+// Throws UserError: no header line, columns that nothing separates, decimal commas between commas. With skip_bad, rows
+// with another number of cells than the header become comments and are counted in `bad`.
+std::string StandardCsv(const std::string& path, std::string text, bool skip_bad, int& bad);
+
+}  // namespace ed3r

@@ -1,0 +1,32 @@
+// Sources on a battery's clock, to the rows of a DecodedLog.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/flight_logs/battery.h"
+#include "studies/flight_logs/log_table.h"
+#include "studies/flight_logs/time_series.h"
+
+namespace ed3r {
+
+struct NamedSeries {
+  std::string name;
+  const TimeSeries* series;
+};
+
+// One row per battery sample, each series by TimeSeries::Nearest; rows in which a series has no value near are left out
+// and counted in a note. `armed` and `landed` (1 or 0) tell rows on the ground; an empty series tells nothing.
+DecodedLog JoinRows(const std::string& path, LogKind kind, const ChosenBattery& battery,
+                    const std::vector<NamedSeries>& series, const TimeSeries& armed,
+                    const TimeSeries& landed);
+
+// Refuses a log that is in the air for less than a motor test takes, by the battery's clock; said before whatever else the
+// log lacks.
+void CheckAnyFlight(const std::string& path, const TimeSeries& clock, const TimeSeries& armed,
+                    const TimeSeries& landed);
+
+// Refuses rows of which none is in the air.
+void CheckFlown(const DecodedLog& log);
+
+}  // namespace ed3r

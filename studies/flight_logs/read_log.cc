@@ -1,0 +1,37 @@
+#include "studies/flight_logs/read_log.h"
+
+#include <algorithm>
+
+#include "engine/core/check.h"
+#include "engine/core/file.h"
+#include "studies/flight_logs/airdata_log.h"
+#include "studies/flight_logs/ardupilot_log.h"
+#include "studies/flight_logs/csv_dialect.h"
+#include "studies/flight_logs/dataflash.h"
+#include "studies/flight_logs/px4_log.h"
+#include "studies/flight_logs/ulog.h"
+
+namespace ed3r {
+
+LogTable ReadLog(const std::string& path, const LogReading& reading) {
+  return ParseLog(path, ReadFile(path, kMaxTextBytes), reading);
+}
+
+LogTable ParseLog(const std::string& path, std::string bytes, const LogReading& reading) {
+  if (ULog::Is(bytes)) return LogTable(ReadPx4Log(path, bytes, reading));
+  if (DataFlashLog::Is(bytes)) return LogTable(ReadArduPilotLog(path, bytes, reading));
+  constexpr std::size_t kLook = 4096;
+  if (std::string_view(bytes).substr(0, kLook).find('\0') != std::string_view::npos)
+    throw UserError(path +
+                    ": neither PX4 ULog, ArduPilot DataFlash (.bin) nor CSV; known logs: those three, and "
+                    "AirData exports");
+  if (bytes.starts_with("FMT, 128"))
+    throw UserError(path + ": ArduPilot's log as text; give the .bin file that it was made from");
+  int bad = 0;
+  CsvTable table =
+      CsvTable::Parse(path, StandardCsv(path, std::move(bytes), reading.skip_bad, bad), CsvComments::kHash);
+  if (IsAirDataLog(table)) return LogTable(ReadAirDataLog(table, reading, bad));
+  return LogTable(std::move(table), bad);
+}
+
+}  // namespace ed3r

@@ -1,0 +1,31 @@
+#include "studies/flight_logs/time_series.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ed3r {
+
+void TimeSeries::Add(double time_s, double value) {
+  if (!std::isfinite(time_s) || (!times_s_.empty() && time_s <= times_s_.back())) return;
+  times_s_.push_back(time_s);
+  values_.push_back(value);
+}
+
+double TimeSeries::Nearest(double time_s) const {
+  const auto after = std::lower_bound(times_s_.begin(), times_s_.end(), time_s);
+  auto best = after;
+  if (after == times_s_.end() || (after != times_s_.begin() && time_s - *(after - 1) < *after - time_s))
+    best = after == times_s_.begin() ? after : after - 1;
+  if (best == times_s_.end() || std::abs(*best - time_s) > kMaxJoinS)
+    return std::numeric_limits<double>::quiet_NaN();
+  return values_[static_cast<std::size_t>(best - times_s_.begin())];
+}
+
+double TimeSeries::Last(double time_s, double before_first) const {
+  const auto after = std::upper_bound(times_s_.begin(), times_s_.end(), time_s);
+  return after == times_s_.begin() ? before_first
+                                   : values_[static_cast<std::size_t>(after - times_s_.begin()) - 1];
+}
+
+}  // namespace ed3r

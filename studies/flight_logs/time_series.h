@@ -1,0 +1,34 @@
+// Values of one source over time, and how sources of different rates come onto one clock.
+//
+// A value is taken from the sample nearest in time, and from none that is further than kMaxJoinS away: neither
+// interpolation, which would smooth one source and not another, nor the previous value, which lags by up to a sample.
+// Flags keep the previous value: a state holds until it changes.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace ed3r {
+
+inline constexpr double kMaxJoinS = 1.0;
+
+class TimeSeries {
+ public:
+  // Samples come in the order of the file; a stamp that does not come after the one before is passed over.
+  void Add(double time_s, double value);
+
+  bool empty() const { return times_s_.empty(); }
+  std::size_t size() const { return times_s_.size(); }
+  double time_s(std::size_t i) const { return times_s_[i]; }
+  double value(std::size_t i) const { return values_[i]; }
+
+  // The later of two that are as near; NaN where no sample is within kMaxJoinS.
+  double Nearest(double time_s) const;
+  // The last sample up to that time; `before_first` where there is none.
+  double Last(double time_s, double before_first) const;
+
+ private:
+  std::vector<double> times_s_, values_;
+};
+
+}  // namespace ed3r

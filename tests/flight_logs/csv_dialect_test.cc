@@ -1,0 +1,65 @@
+#include "studies/flight_logs/csv_dialect.h"
+
+#include <gtest/gtest.h>
+
+#include "studies/flight_logs/read_log.h"
+#include "tests/flight_logs/complaint.h"
+
+namespace ed3r {
+namespace {
+
+std::string Standard(const std::string& text, bool skip_bad = false) {
+  int bad = 0;
+  return StandardCsv("x.csv", text, skip_bad, bad);
+}
+
+TEST(CsvDialectTest, SemicolonsAndTabsWithDecimalCommas) {
+  EXPECT_EQ(Standard("t;p\n0,5;400,25\n"), "t,p\n0.5,400.25\n");
+  EXPECT_EQ(Standard("t\tp\n0,5\t400\n"), "t,p\n0.5,400\n");
+  EXPECT_EQ(Standard("sep=;\nt;p\n1;2\n"), "#ep=;\nt,p\n1,2\n");
+  const LogTable log = ParseLog("x.csv", "\xEF\xBB\xBF\"time\";\"speed\"\r\n0,5;1,25\r\n1;2\r\n", {});
+  EXPECT_EQ(log.columns(), (std::vector<std::string>{"time", "speed"}));
+  EXPECT_DOUBLE_EQ(log.Number(0, 1, 0, 10), 1.25);
+}
+
+TEST(CsvDialectTest, CommentsBlankLinesAndLineEnds) {
+  EXPECT_EQ(Standard("t,p\r1,2\r3,4\r"), "t,p\n1,2\n3,4\n");
+  const LogTable log =
+      ParseLog("x.csv", "# flown by us\n% too\n// and this\n\nt,p\n1,2\n\n# pause\n3,4\n", {});
+  ASSERT_EQ(log.rows(), 2u);
+  EXPECT_DOUBLE_EQ(log.Number(1, 1, 0, 10), 4.0);
+  EXPECT_EQ(log.WhereRow(1), "x.csv:9:1: ");
+}
+
+TEST(CsvDialectTest, NamesWhatItCannotRead) {
+  const auto complaint = [](const std::string& text) { return Complaint([&] { Standard(text); }); };
+  EXPECT_EQ(complaint("t,p\n0,5,400,25\n"),
+            "x.csv:2:1: 4 numbers, but the header names 2 columns: these look like decimal commas between "
+            "commas; write decimal "
+            "points, or separate the columns by semicolons");
+  EXPECT_EQ(complaint("time power speed\n1 2 3\n"),
+            "x.csv:1:1: no comma, semicolon or tab separates the names of the columns");
+  EXPECT_EQ(
+      complaint("1,2\n3,4\n"),
+      "x.csv:1:1: a line of numbers where the names of the columns were expected; a header line is needed");
+  EXPECT_EQ(complaint("t,p\n1,2\n3\n"),
+            "x.csv:3:1: 1 cells, but the header names 2 columns; --skip-bad leaves such rows out");
+}
+
+TEST(CsvDialectTest, SkipsAndCountsRaggedRows) {
+  const LogTable log = ParseLog("x.csv", "t,p\n1,2\n3\n4,5\n6,", {.skip_bad = true});
+  EXPECT_EQ(log.rows(), 3u) << "a last line that is cut off after the comma still has its cells";
+  EXPECT_EQ(log.bad(), 1);
+}
+
+TEST(CsvDialectTest, KnowsWhatIsNoLog) {
+  EXPECT_NE(Complaint([] {
+              ParseLog("x", std::string("PK\0\0", 4), {});
+            }).find("neither PX4 ULog, ArduPilot DataFlash"),
+            std::string::npos);
+  EXPECT_EQ(Complaint([] { ParseLog("x.log", "FMT, 128, 89, FMT\n", {}); }),
+            "x.log: ArduPilot's log as text; give the .bin file that it was made from");
+}
+
+}  // namespace
+}  // namespace ed3r
