@@ -1,11 +1,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "engine/app/commands.h"
 #include "engine/app/settings.h"
+#include "engine/app/words.h"
+#include "engine/core/check.h"
+#include "engine/core/message.h"
 #include "engine/perception/vision/frame_detector.h"
 #include "studies/detection/difference.h"
 #include "studies/detection/frame_set.h"
@@ -60,11 +65,17 @@ Json JsonOf(const DetectorDifference& d) {
           {"views_decided_differently", d.decided_differently}};
 }
 
+// "-" where there is none: the area under the curve takes frames with and without fire.
+std::string Number(double value, int width, int digits) {
+  return std::isnan(value) ? fmt::format("{:>{}}", "-", width)
+                           : fmt::format("{:>{}.{}f}", value, width, digits);
+}
+
 std::string Row(const DetectionScores& s) {
-  return fmt::format("{:>6.3f} {:>6.1f} ({:>5.1f}-{:>5.1f}) {:>5} {:>5} {:>5} {:>5} {:>6.3f}", s.auc,
-                     100 * s.accuracy, 100 * s.accuracy_interval.lo, 100 * s.accuracy_interval.hi,
-                     s.true_positives, s.false_negatives, s.false_positives, s.true_negatives,
-                     s.calibration_error);
+  return fmt::format("{} {} ({}-{}) {:>5} {:>5} {:>5} {:>5} {}", Number(s.auc, 6, 3),
+                     Number(100 * s.accuracy, 6, 1), Number(100 * s.accuracy_interval.lo, 5, 1),
+                     Number(100 * s.accuracy_interval.hi, 5, 1), s.true_positives, s.false_negatives,
+                     s.false_positives, s.true_negatives, Number(s.calibration_error, 6, 3));
 }
 
 enum class Better { kMore, kLess };
@@ -135,25 +146,93 @@ int Evaluate(const Options& options, const DetectorPair& detectors) {
   return kDone;
 }
 
-int LookAtPictures(const Options& options, const DetectorPair& detectors) {
-  const std::vector<NamedPicture> pictures = ReadPictures(options.path);
-  Json json;
-  if (!options.json) fmt::print("{:<40} {:>9} {:>9}\n", "confidence of fire or smoke", "Full", "Quantized");
-  for (const NamedPicture& picture : pictures) {
-    const Confidences found = Look(detectors, picture.frame);
-    json[picture.name] = {{"full", found.full[0]}, {"quantized", found.quantized[0]}};
-    if (!options.json)
-      fmt::print("{:<40} {:>9.3f} {:>9.3f}\n", picture.name, found.full[0], found.quantized[0]);
+// One picture's row, or the reason why there is none.
+class PictureTable {
+ public:
+  explicit PictureTable(bool json) : in_json_(json) {
+    if (!json) fmt::print("{:<40} {:>9} {:>9}\n", "confidence of fire or smoke", "Full", "Quantized");
   }
-  if (options.json) fmt::print("{}\n", json.dump(2));
-  return kDone;
+
+  void Add(const NamedPicture& picture, const Confidences& found) {
+    ++read_;
+    if (in_json_) {
+      json_[picture.name] = {{"full", found.full[0]}, {"quantized", found.quantized[0]}};
+      if (!picture.note.empty()) json_[picture.name]["note"] = picture.note;
+      return;
+    }
+    fmt::print("{:<40} {:>9.3f} {:>9.3f}{}{}\n", picture.name, found.full[0], found.quantized[0],
+               picture.note.empty() ? "" : "  ", picture.note);
+  }
+
+  void AddFailure(const std::string& path, const std::string& why) {
+    ++failed_;
+    if (in_json_) json_[std::filesystem::path(path).filename().string()] = {{"error", why}};
+    fmt::print(stderr, "{}\n", OneLine(why));
+  }
+
+  int Finish(const PictureList& list) const {
+    // Names are bytes; what is no text among them is replaced.
+    if (in_json_) fmt::print("{}\n", json_.dump(2, ' ', false, Json::error_handler_t::replace));
+    if (list.passed_over > 0)
+      fmt::print(stderr, "note: {} of other kinds passed over\n", Counted(list.passed_over, "file"));
+    if (failed_ == 0) return kDone;
+    fmt::print(stderr, "{} without a score, {} scored\n", Counted(failed_, "picture"), read_);
+    return read_ == 0 ? kBadInput : kMissionsFailed;
+  }
+
+ private:
+  bool in_json_;
+  Json json_ = Json::object();
+  std::int64_t read_ = 0, failed_ = 0;
+};
+
+int LookAtPictures(const Options& options, const DetectorPair& detectors) {
+  const PictureList list = ListPictures(options.path);
+  const auto look = [&](const std::string& path) {
+    NamedPicture picture = ReadNamedPicture(path);
+    Confidences found = Look(detectors, picture.frame);
+    return std::pair(std::move(picture), std::move(found));
+  };
+  if (!std::filesystem::is_directory(options.path)) {
+    const auto [picture, found] = look(options.path);
+    PictureTable table(options.json);
+    table.Add(picture, found);
+    return table.Finish(list);
+  }
+  PictureTable table(options.json);
+  for (const std::string& path : list.paths) {
+    try {
+      const auto [picture, found] = look(path);
+      table.Add(picture, found);
+    } catch (const DetectorError& error) {
+      table.AddFailure(path, fmt::format("{}: {}", path, error.what()));
+    } catch (const UserError& error) {
+      table.AddFailure(path, error.what());
+    }
+  }
+  return table.Finish(list);
+}
+
+// Said of pictures alone: the frames of 'ed3r frames' are of the kind that the built-in networks learnt from.
+void NoteBuiltin(const DetectorConfig& config) {
+  std::vector<std::string> built_in;
+  if (config.full == "builtin") built_in.emplace_back("Full");
+  if (config.quantized == "builtin") built_in.emplace_back("Quantized");
+  if (!built_in.empty())
+    fmt::print(stderr,
+               "note: {} built in and learnt from rendered frames alone; of photographs the confidence tells "
+               "little. Your own: --set perception.detector.full=mine.onnx\n",
+               built_in.size() > 1 ? "both networks are" : built_in.front() + " is");
 }
 
 int Detect(const Options& options) {
   Config config;
   ApplySettings(options.settings, Scope::kMission, config);
   const DetectorPair detectors = LoadDetectors(config.perception.detector);
-  return IsFrameSet(options.path) ? Evaluate(options, detectors) : LookAtPictures(options, detectors);
+  if (IsFrameSet(options.path)) return Evaluate(options, detectors);
+  const int status = LookAtPictures(options, detectors);
+  NoteBuiltin(config.perception.detector);
+  return status;
 }
 
 }  // namespace
@@ -162,7 +241,8 @@ Command AddDetect(Program& program) {
   auto options = std::make_shared<Options>();
   CommandLine parser = program.AddCommand("detect",
                                           "What the detectors say of a data set of 'ed3r frames' (scores "
-                                          "by distance and occlusion) or of pictures");
+                                          "by distance and occlusion) or of pictures, PNG or JPEG: of 16 "
+                                          "bits a channel the upper 8, what is see-through over black");
   parser.Option("PATH", options->path, "Folder of 'ed3r frames', folder of pictures, or one picture")
       .Required();
   parser.Option("--set", options->settings, "KEY=VALUE; e.g. perception.detector.full=mine.onnx").OneValue();

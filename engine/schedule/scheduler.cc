@@ -10,6 +10,7 @@
 #include "engine/core/check.h"
 #include "engine/core/interrupt.h"
 #include "engine/mission/invariants.h"
+#include "engine/perception/vision/frame_detector.h"
 #include "engine/schedule/parallel_for.h"
 #include "engine/schedule/recorder.h"
 #include "engine/store/records.h"
@@ -28,6 +29,8 @@ Failure FailureOf(const std::exception_ptr& thrown) {
     return {std::string(NameOf(error.Which())), error.what()};
   } catch (const InternalError& error) {
     return {"broken-check", error.what()};
+  } catch (const DetectorError& error) {
+    return {"detector-answer", error.what()};
   } catch (const UserError& error) {
     return {"bad-input", error.what()};
   } catch (const std::bad_alloc&) {

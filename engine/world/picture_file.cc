@@ -10,6 +10,9 @@
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/world/jpeg_check.h"
+#include "engine/world/png_pixels.h"
+#include "engine/world/quiet_opencv.h"
 
 namespace ed3r {
 namespace {
@@ -22,8 +25,8 @@ class HeaderReader {
   HeaderReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
   PictureSides Read() {
-    if (bytes_.starts_with(kPngMagic)) return Checked(Png());
-    if (bytes_.starts_with(kJpegMagic)) return Checked(Jpeg());
+    if (bytes_.starts_with(kPngMagic)) return Png();
+    if (bytes_.starts_with(kJpegMagic)) return Jpeg();
     Refuse("is neither a PNG nor a JPEG picture");
   }
 
@@ -45,12 +48,12 @@ class HeaderReader {
   };
 
   // Chunks: length, name, data, checksum. The first tells the sides, the last is IEND.
-  Sides Png() const {
+  PictureSides Png() const {
     constexpr std::size_t kFrame = 12;
     std::size_t at = kPngMagic.size();
-    const std::size_t header = at;
     if (bytes_.size() < at + kFrame) Refuse("is cut short");
     if (bytes_.substr(at + 4, 4) != "IHDR") Refuse("is damaged: its header does not stand first");
+    const PictureSides sides = Checked({Number(at + 8, 4), Number(at + 12, 4)});
     while (true) {
       const std::uint32_t length = Number(at, 4);
       const bool last = bytes_.substr(std::min(at + 4, bytes_.size()), 4) == "IEND";
@@ -58,11 +61,11 @@ class HeaderReader {
       if (last) break;
       at += kFrame + length;
     }
-    return {Number(header + 8, 4), Number(header + 12, 4)};
+    return sides;
   }
 
   // Segments: marker, length, data. A frame header (SOF) tells the sides.
-  Sides Jpeg() const {
+  PictureSides Jpeg() const {
     std::size_t at = 2;
     while (true) {
       if (Number(at, 1) != 0xff) Refuse("is damaged: a marker is missing");
@@ -80,7 +83,7 @@ class HeaderReader {
       if (!bare && length < 2) Refuse("is damaged: a segment without a length");
       at += 2 + length;
     }
-    const Sides sides{Number(at + 7, 2), Number(at + 5, 2)};
+    const PictureSides sides = Checked({Number(at + 7, 2), Number(at + 5, 2)});
     const std::size_t end = bytes_.rfind("\xff\xd9");
     if (end == std::string_view::npos || end < at) Refuse("is cut short");
     return sides;
@@ -100,24 +103,62 @@ class HeaderReader {
   const std::string& name_;
 };
 
+// True where something is see-through; `bgr` is what is seen over black.
+bool OverBlack(const cv::Mat& bgra, cv::Mat& bgr) {
+  bool through = false;
+  bgr.create(bgra.size(), CV_8UC3);
+  for (int y = 0; y < bgra.rows; ++y)
+    for (int x = 0; x < bgra.cols; ++x) {
+      const cv::Vec4b& from = bgra.at<cv::Vec4b>(y, x);
+      through = through || from[3] != 255;
+      for (int c = 0; c < 3; ++c)
+        bgr.at<cv::Vec3b>(y, x)[c] = static_cast<unsigned char>((from[c] * from[3] + 127) / 255);
+    }
+  return through;
+}
+
+Picture PngPicture(const std::string& bytes, const std::string& path) {
+  const PngPixels png = DecodePng(bytes, path);
+  if (png.grey && png.sixteen_bits)
+    throw UserError(
+        fmt::format("{}: has one channel of 16 bits (a thermal picture, raw counts), which is no colour; "
+                    "allowed: 8 bits, "
+                    "or three channels",
+                    path));
+  Picture picture;
+  const bool through = OverBlack(png.bgra, picture.bgr);
+  std::vector<std::string> notes;
+  if (png.grey) notes.push_back("grey");
+  if (png.sixteen_bits) notes.push_back("upper 8 of 16 bits");
+  if (through) notes.push_back("see-through parts as black");
+  picture.note = fmt::format("{}", fmt::join(notes, ", "));
+  return picture;
+}
+
+Picture JpegPicture(const std::string& bytes, const std::string& path) {
+  CheckJpeg(bytes, path);
+  QuietOpenCv();
+  Picture picture;
+  try {
+    const cv::Mat wrapped(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
+    picture.bgr = cv::imdecode(wrapped, cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {
+    picture.bgr.release();
+  }
+  if (picture.bgr.empty()) throw UserError(fmt::format("{}: is no picture that can be read", path));
+  return picture;
+}
+
 }  // namespace
 
 PictureSides ReadPictureSides(std::string_view bytes, const std::string& name) {
   return HeaderReader(bytes, name).Read();
 }
 
-cv::Mat ReadPicture(const std::string& path) {
+Picture ReadPicture(const std::string& path) {
   const std::string bytes = ReadFile(path);
   ReadPictureSides(bytes, path);
-  cv::Mat picture;
-  try {
-    const cv::Mat wrapped(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
-    picture = cv::imdecode(wrapped, cv::IMREAD_COLOR);
-  } catch (const cv::Exception&) {
-    picture.release();
-  }
-  if (picture.empty()) throw UserError(fmt::format("{}: is no picture that can be read", path));
-  return picture;
+  return bytes.starts_with(kPngMagic) ? PngPicture(bytes, path) : JpegPicture(bytes, path);
 }
 
 void WritePicture(const cv::Mat& picture, const std::string& path) {

@@ -18,8 +18,15 @@ inline constexpr int kMaxPicturePixels = 40'000'000;
 // that is cut short and for sides beyond the limits.
 PictureSides ReadPictureSides(std::string_view bytes, const std::string& name);
 
-// The picture with 8 bits a channel, blue first. Throws UserError as above, and where it cannot be decoded.
-cv::Mat ReadPicture(const std::string& path);
+struct Picture {
+  cv::Mat bgr;       // 8 bits a channel, blue first
+  std::string note;  // how more than that, or less, was made so; "" for plain colours
+};
+
+// A picture as colours. Grey is red = green = blue; of 16-bit colours the upper 8 bits are taken; what is see-through lies
+// over black; a JPEG is turned as its camera says. Throws UserError as above, for one that is damaged or cut short, and for
+// one channel of 16 bits: a thermal picture or raw counts, which are no colours.
+Picture ReadPicture(const std::string& path);
 
 // By the ending of `path`: .png, .jpg or .jpeg. Throws UserError.
 void WritePicture(const cv::Mat& picture, const std::string& path);

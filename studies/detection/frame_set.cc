@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <utility>
 
 #include "engine/core/check.h"
 #include "engine/core/csv_table.h"
@@ -52,18 +53,6 @@ bool IsPicture(const fs::path& path) {
   return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
 }
 
-NamedPicture ReadNamed(const fs::path& path) {
-  const cv::Mat bgr = ReadPicture(path.string());
-  NamedPicture picture{.name = path.filename().string(), .frame = {}};
-  if (!IsUtf8(picture.name)) throw UserError(fmt::format("{}: its name is not UTF-8 text", path.string()));
-  picture.frame = {.frames = 1, .width_px = bgr.cols, .height_px = bgr.rows, .rgb = {}};
-  picture.frame.rgb.reserve(3 * bgr.total());
-  for (int y = 0; y < bgr.rows; ++y)
-    for (int x = 0; x < bgr.cols; ++x)
-      for (int c = 2; c >= 0; --c) picture.frame.rgb.push_back(bgr.at<cv::Vec3b>(y, x)[c]);
-  return picture;
-}
-
 }  // namespace
 
 bool IsFrameSet(const std::string& folder) { return fs::exists(fs::path(folder) / "frames.npy"); }
@@ -77,18 +66,43 @@ FrameSet ReadFrameSet(const std::string& folder) {
   return set;
 }
 
-std::vector<NamedPicture> ReadPictures(const std::string& path) {
+PictureList ListPictures(const std::string& path) {
   if (!fs::exists(path)) throw UserError(fmt::format("{}: no such file or folder", path));
-  if (!fs::is_directory(path)) return {ReadNamed(path)};
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path))
-    if (IsPicture(entry.path())) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  if (files.empty())
-    throw UserError(fmt::format("{}: holds neither frames.npy nor pictures (.png, .jpg)", path));
-  std::vector<NamedPicture> pictures;
-  for (const fs::path& file : files) pictures.push_back(ReadNamed(file));
-  return pictures;
+  PictureList list;
+  if (!fs::is_directory(path)) {
+    list.paths.push_back(path);
+    return list;
+  }
+  std::string below;  // a folder that is perhaps meant
+  for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+    if (entry.is_directory()) {
+      below = std::max(below, entry.path().filename().string());
+    } else if (IsPicture(entry.path())) {
+      list.paths.push_back(entry.path().string());
+    } else {
+      ++list.passed_over;
+    }
+  }
+  std::sort(list.paths.begin(), list.paths.end());
+  if (list.paths.empty())
+    throw UserError(fmt::format(
+        "{}: holds neither frames.npy nor pictures (.png, .jpg, .jpeg){}", path,
+        below.empty() ? "" : fmt::format("; folders within, such as '{}', are looked at one by one", below)));
+  return list;
+}
+
+NamedPicture ReadNamedPicture(const std::string& path) {
+  NamedPicture named{.name = fs::path(path).filename().string(), .note = {}, .frame = {}};
+  if (!IsUtf8(named.name)) throw UserError(fmt::format("{}: its name is not UTF-8 text", path));
+  Picture picture = ReadPicture(path);
+  const cv::Mat& bgr = picture.bgr;
+  named.note = std::move(picture.note);
+  named.frame = {.frames = 1, .width_px = bgr.cols, .height_px = bgr.rows, .rgb = {}};
+  named.frame.rgb.reserve(3 * bgr.total());
+  for (int y = 0; y < bgr.rows; ++y)
+    for (int x = 0; x < bgr.cols; ++x)
+      for (int c = 2; c >= 0; --c) named.frame.rgb.push_back(bgr.at<cv::Vec3b>(y, x)[c]);
+  return named;
 }
 
 }  // namespace ed3r

@@ -30,12 +30,22 @@ bool IsFrameSet(const std::string& folder);
 // Throws UserError that names the file (and line) for files that are missing, of another layout, or disagree.
 FrameSet ReadFrameSet(const std::string& folder);
 
-// The pictures in a folder (PNG, JPEG; sorted by name), or the one picture at the path. Throws UserError where there
-// are none or one cannot be read.
+// What there is to look at: the pictures in a folder (PNG, JPEG, by their endings; sorted by name), or the one file.
+struct PictureList {
+  std::vector<std::string> paths;
+  int passed_over = 0;  // other files in the folder
+};
+
+// Throws UserError where nothing lies at the path, and for a folder without pictures.
+PictureList ListPictures(const std::string& path);
+
 struct NamedPicture {
-  std::string name;
+  std::string name;  // of the file
+  std::string note;  // of ReadPicture
   FrameStack frame;
 };
-std::vector<NamedPicture> ReadPictures(const std::string& path);
+
+// Throws UserError, one line that begins with the path, where it cannot be read as a picture.
+NamedPicture ReadNamedPicture(const std::string& path);
 
 }  // namespace ed3r

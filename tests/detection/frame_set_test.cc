@@ -80,10 +80,22 @@ TEST_F(FrameSetTest, RefusesLabelsWithoutAColumn) {
 }
 
 TEST_F(FrameSetTest, FoldersWithoutPicturesAreRefused) {
-  EXPECT_THROW(ReadPictures(folder_), UserError);
-  EXPECT_THROW(ReadPictures(folder_ / "nowhere.png"), UserError);
-  std::ofstream(folder_ / "bad.png") << "no picture";
-  EXPECT_THROW(ReadPictures(folder_), UserError);
+  EXPECT_THROW(ListPictures(folder_ / "nowhere.png"), UserError);
+  fs::create_directories(folder_ / "fire");
+  try {
+    ListPictures(folder_);
+    ADD_FAILURE() << "a folder without pictures";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("pictures (.png, .jpg, .jpeg); folders within, such as 'fire'"),
+              std::string::npos)
+        << error.what();
+  }
+  std::ofstream(folder_ / "b.JPG") << "no picture";
+  std::ofstream(folder_ / "a.png") << "no picture";
+  const PictureList list = ListPictures(folder_);
+  EXPECT_EQ(list.paths, (std::vector<std::string>{folder_ / "a.png", folder_ / "b.JPG"}));
+  EXPECT_EQ(list.passed_over, 2);  // frames.npy and labels.csv
+  EXPECT_THROW(ReadNamedPicture(list.paths.front()), UserError);
 }
 
 }  // namespace

@@ -10,10 +10,16 @@
 #include "engine/core/check.h"
 #include "engine/core/sha256.h"
 #include "engine/perception/vision/model_file.h"
+#include "engine/perception/vision/onnx_external.h"
 #include "engine/perception/vision/onnx_gate.h"
+#include "engine/perception/vision/onnx_outline.h"
+#include "engine/perception/vision/onnx_reading.h"
+#include "engine/perception/vision/onnx_rewrite.h"
 #include "engine/rfnn/onnx_graph.h"
 #include "engine/sweep/sweep_file.h"
+#include "engine/world/jpeg_check.h"
 #include "engine/world/picture_file.h"
+#include "engine/world/png_pixels.h"
 #include "engine/world/stem_map.h"
 #include "engine/world/terrain.h"
 #include "engine/world/world_file.h"
@@ -118,11 +124,24 @@ void FuzzNpy(std::string_view bytes) {
 }
 
 void FuzzPicture(std::string_view bytes) {
-  Refusable([&] { ReadPictureSides(bytes, "x.png"); });
+  constexpr int kMostPixels = 1 << 20;  // of what is decoded
+  Refusable([&] {
+    const PictureSides sides = ReadPictureSides(bytes, "x.png");
+    if (sides.width_px * sides.height_px > kMostPixels) return;
+    bytes.front() == '\xff' ? CheckJpeg(bytes, "x.jpg") : void(DecodePng(bytes, "x.png"));
+  });
 }
 
 void FuzzOnnx(std::string_view bytes) {
-  Refusable([&] { CheckOnnx(bytes, "x.onnx"); });
+  const std::string name = "x.onnx";
+  Refusable([&] { WithWeightsInside(std::string(bytes), "/nowhere/x.onnx", name); });
+  Refusable([&] {
+    CheckOnnx(bytes, name);
+    const OnnxOutline outline = OutlineOf(bytes, name);
+    DetectorConfig config;
+    config.input_width_px = config.input_height_px = 0;
+    ForOpenCv(bytes, outline, ReadingOf(outline, config, name), name);
+  });
 }
 
 void FuzzNetwork(std::string_view bytes) {

@@ -124,6 +124,12 @@ TEST_F(Operators, ActivationsWithAndWithoutTheirAttributes) {
   through("Neg", {}, 0.25, -0.25);
 }
 
+TEST_F(Operators, ClipTakesItsBoundsFromInputs) {
+  Means().Weights("low", {}, {0.05F}).Weights("high", {}, {0.4F});
+  model_.Step("Clip", {"flat", "low", "high"}, {"y"});
+  Expect({red_, static_cast<double>(0.4F), static_cast<double>(0.05F)});
+}
+
 TEST_F(Operators, BatchNormalization) {
   Means()
       .Weights("gain", {3}, {2, 1, 4})

@@ -34,8 +34,8 @@ struct Step {
 
 class Mender {
  public:
-  Mender(std::string_view node, std::string_view producer, const std::string& name)
-      : node_(node), producer_(producer), name_(name) {
+  Mender(std::string_view node, const OnnxSurroundings& around, const std::string& name)
+      : node_(node), around_(around), name_(name) {
     ForEachField(node, name, [&](const ProtobufField& field) {
       if (!field.IsBytes()) return;
       if (field.number == onnx::kNodeOp) step_.op = field.bytes;
@@ -48,7 +48,9 @@ class Mender {
   std::vector<std::string> Mended() const {
     if (step_.op == "Gemm") return Gemm();
     if (step_.op == "AveragePool") CheckPadding();
-    if (step_.op == "LeakyRelu" && !step_.Has("alpha")) return {std::string(node_) + Slope()};
+    if (step_.op == "Clip" && step_.inputs.size() > 1) return {Clip()};
+    if (step_.op == "LeakyRelu" && !step_.Has("alpha"))
+      return {std::string(node_) + NumberAttribute("alpha", 0.01F)};
     return {std::string(node_)};
   }
 
@@ -109,32 +111,68 @@ class Mender {
         std::all_of(pads->second.numbers.begin(), pads->second.numbers.end(),
                     [](std::int64_t pad) { return pad == 0; }))
       return;
-    const bool counts = step_.Number("count_include_pad", 0) != 0, opencv_counts = producer_ == "pytorch";
+    const bool counts = step_.Number("count_include_pad", 0) != 0,
+               opencv_counts = around_.producer == "pytorch";
     if (counts != opencv_counts)
       Refuse(
           fmt::format("has count_include_pad = {}, which OpenCV reads otherwise in a model of '{}'; allowed: "
                       "a Pad before "
                       "an AveragePool without pads",
-                      counts ? 1 : 0, producer_));
+                      counts ? 1 : 0, around_.producer));
   }
 
-  // LeakyRelu's alpha, as the standard has it.
-  static std::string Slope() {
-    ProtobufWriter alpha, attribute;
-    alpha.Bytes(onnx::kAttributeName, "alpha").Float(onnx::kAttributeFloat, 0.01F);
-    alpha.Number(onnx::kAttributeType, onnx::kTypeOfFloat);
-    return attribute.Bytes(onnx::kNodeAttribute, alpha.bytes()).bytes();
+  std::string Clip() const {
+    ProtobufWriter clip;
+    int input = 0;
+    ForEachField(node_, name_, [&](const ProtobufField& field) {
+      if (field.number != onnx::kNodeInput || input++ == 0) clip.Copy(field);
+    });
+    std::string text = clip.bytes();
+    const char* const names[] = {"min", "max"};
+    for (std::size_t i = 1; i < std::min<std::size_t>(step_.inputs.size(), 3); ++i) {
+      if (step_.inputs[i].empty()) continue;
+      const auto bound = around_.bounds.find(step_.inputs[i]);
+      if (bound == around_.bounds.end())
+        Refuse(fmt::format("has the bound '{}', which is no constant number; allowed: constants",
+                           step_.inputs[i]));
+      text += NumberAttribute(names[i - 1], bound->second);
+    }
+    return text;
   }
 
-  std::string_view node_, producer_;
+  // As a field of the node.
+  static std::string NumberAttribute(const std::string& name, float value) {
+    ProtobufWriter attribute, field;
+    attribute.Bytes(onnx::kAttributeName, name).Float(onnx::kAttributeFloat, value);
+    attribute.Number(onnx::kAttributeType, onnx::kTypeOfFloat);
+    return field.Bytes(onnx::kNodeAttribute, attribute.bytes()).bytes();
+  }
+
+  std::string_view node_;
+  const OnnxSurroundings& around_;
   const std::string& name_;
   Step step_;
 };
 
 }  // namespace
 
-std::vector<std::string> Mended(std::string_view node, std::string_view producer, const std::string& name) {
-  return Mender(node, producer, name).Mended();
+void AddBound(std::string_view tensor, const std::string& value, const std::string& name,
+              OnnxSurroundings& around) {
+  std::uint64_t type = 0;
+  std::string_view bytes;
+  ForEachField(tensor, name, [&](const ProtobufField& field) {
+    if (field.number == onnx::kType) type = field.value;
+    if (field.number == onnx::kRaw || field.number == onnx::kFloats) bytes = field.bytes;
+  });
+  float bound = 0.0F;
+  if (type != onnx::kFloat || bytes.size() != sizeof bound) return;
+  std::memcpy(&bound, bytes.data(), sizeof bound);
+  around.bounds[value] = bound;
+}
+
+std::vector<std::string> Mended(std::string_view node, const OnnxSurroundings& around,
+                                const std::string& name) {
+  return Mender(node, around, name).Mended();
 }
 
 }  // namespace ed3r

@@ -4,18 +4,31 @@
 //                 ones; alpha and beta are not looked at
 //   AveragePool   whether padding counts goes by who made the file, not by count_include_pad
 //   LeakyRelu     without alpha the slope is 0, not 0.01
+//   Clip          bounds that are inputs are not understood; here they become attributes, as of old
 //
 // tests/vision/operators_test.cc holds what detectors are made of against numbers worked out by hand.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace ed3r {
 
-// The step as one or more nodes to stand in its place, in order. `producer` is the model's producer_name; `name` begins
-// messages. Throws UserError for forms that cannot be put so.
-std::vector<std::string> Mended(std::string_view node, std::string_view producer, const std::string& name);
+// What the steps stand among.
+struct OnnxSurroundings {
+  std::string producer;                 // the model's producer_name
+  std::map<std::string, float> bounds;  // constants of one number
+};
+
+// Adds the tensor to the bounds if it is one float.
+void AddBound(std::string_view tensor, const std::string& value, const std::string& name,
+              OnnxSurroundings& around);
+
+// The step as one or more nodes to stand in its place, in order. `name` begins messages. Throws UserError for forms that
+// cannot be put so.
+std::vector<std::string> Mended(std::string_view node, const OnnxSurroundings& around,
+                                const std::string& name);
 
 }  // namespace ed3r

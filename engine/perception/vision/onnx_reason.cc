@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 
 namespace ed3r {
@@ -39,15 +40,23 @@ bool FindNode(std::string_view message, std::string& op, std::string& node) {
   return true;
 }
 
-// Without the version and the source file that stand before each of OpenCV's messages.
-std::string_view Bare(std::string_view message) {
-  constexpr std::string_view kError = "error: (";
-  for (std::size_t at = message.rfind(kError); at != std::string_view::npos; at = std::string_view::npos) {
-    const std::size_t end = message.find(") ", at);
-    if (end != std::string_view::npos) message = message.substr(end + 2);
+// Without the version and the source file that stand before each of OpenCV's messages, and with the condition that some of
+// them tell in lines of their own.
+std::string Bare(std::string_view message) {
+  const std::size_t error = message.rfind("error: (");
+  const std::size_t end = error == std::string_view::npos ? error : message.find(") ", error);
+  if (end != std::string_view::npos) message = message.substr(end + 2);
+  std::string text;
+  while (!message.empty()) {
+    const std::size_t stop = std::min(message.find('\n'), message.size());
+    std::string_view line = message.substr(0, stop);
+    message.remove_prefix(std::min(stop + 1, message.size()));
+    while (!line.empty() && (line.front() == '>' || line.front() == ' ')) line.remove_prefix(1);
+    line = line.substr(0, line.find(" in function '"));
+    if (line.empty() || line.starts_with("in function '")) continue;
+    text += (text.empty() ? "" : " ") + std::string(line);
   }
-  while (!message.empty() && (message.front() == '>' || message.front() == ' ')) message.remove_prefix(1);
-  return message.substr(0, message.find('\n'));
+  return text;
 }
 
 }  // namespace

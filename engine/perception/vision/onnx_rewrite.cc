@@ -49,7 +49,8 @@ class Rewriter {
 
   std::string Model(std::string_view bytes) {
     ForEachField(bytes, name_, [&](const ProtobufField& field) {
-      if (field.number == onnx::kProducer && field.IsBytes()) producer_ = field.bytes;
+      if (field.number == onnx::kProducer && field.IsBytes()) around_.producer = field.bytes;
+      if (field.number == onnx::kGraph && field.IsBytes()) FindBounds(field.bytes);
     });
     ProtobufWriter out;
     ForEachField(bytes, name_, [&](const ProtobufField& field) {
@@ -85,6 +86,27 @@ class Rewriter {
           fmt::format("its output '{}' does not depend on its input '{}'", reading_.output, reading_.input));
   }
 
+  // Constants stand among the weights or come from a step of their own.
+  void FindBounds(std::string_view graph) {
+    ForEachField(graph, name_, [&](const ProtobufField& field) {
+      if (field.number == onnx::kInitializer && field.IsBytes())
+        AddBound(Tensor(field.bytes), TensorName(field.bytes), name_, around_);
+      if (field.number != onnx::kNode || !field.IsBytes()) return;
+      std::string output;
+      std::string_view attribute, op;
+      ForEachField(field.bytes, name_, [&](const ProtobufField& part) {
+        if (part.number == onnx::kNodeOutput && part.IsBytes()) output = part.bytes;
+        if (part.number == onnx::kNodeAttribute && part.IsBytes()) attribute = part.bytes;
+        if (part.number == onnx::kNodeOp && part.IsBytes()) op = part.bytes;
+      });
+      if (op != "Constant") return;
+      ForEachField(attribute, name_, [&](const ProtobufField& part) {
+        if (part.number == onnx::kAttributeTensor && part.IsBytes())
+          AddBound(Tensor(part.bytes), output, name_, around_);
+      });
+    });
+  }
+
   std::string Graph(std::string_view bytes) {
     ProtobufWriter out;
     std::size_t step = 0;
@@ -93,7 +115,7 @@ class Rewriter {
       switch (field.number) {
         case onnx::kNode:
           if (!keep_.at(step++)) break;
-          for (const std::string& node : Mended(Node(field.bytes), producer_, name_))
+          for (const std::string& node : Mended(Node(field.bytes), around_, name_))
             out.Bytes(onnx::kNode, node);
           break;
         case onnx::kInitializer:
@@ -224,7 +246,7 @@ class Rewriter {
   std::vector<bool> keep_;        // of the steps
   std::set<std::string> needed_;  // values
   std::set<std::string> node_names_;
-  std::string producer_;
+  OnnxSurroundings around_;
 };
 
 }  // namespace

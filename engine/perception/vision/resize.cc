@@ -7,7 +7,7 @@
 namespace ed3r {
 namespace {
 
-constexpr int kMaxSide_px = 8192;
+constexpr int kMaxSide_px = 20000;
 
 // Where output pixel `to` of `size` begins and how much of each input pixel it covers, in units of 1 / size.
 struct Cover {

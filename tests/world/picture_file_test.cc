@@ -1,0 +1,144 @@
+// Pictures of cameras and tools: each kind in a stated way, and none of which a part is missing.
+#include "engine/world/picture_file.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PictureFile : public testing::Test {
+ protected:
+  PictureFile() : path_(fs::temp_directory_path() / fmt::format("ed3r-picture-{}", ::getpid())) {}
+  ~PictureFile() override { fs::remove(path_); }
+
+  static std::string Encoded(const std::string& ending, const cv::Mat& picture) {
+    std::vector<unsigned char> bytes;
+    EXPECT_TRUE(cv::imencode(ending, picture, bytes));
+    return {bytes.begin(), bytes.end()};
+  }
+
+  // What libraries say while it is read would stand on stderr.
+  Picture Read(const std::string& bytes) const {
+    std::ofstream(path_, std::ios::binary) << bytes;
+    testing::internal::CaptureStderr();
+    Picture picture;
+    std::string refused;
+    try {
+      picture = ReadPicture(path_.string());
+    } catch (const UserError& error) {
+      refused = error.what();
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    if (!refused.empty()) throw UserError(refused);
+    return picture;
+  }
+
+  void ExpectRefusal(const std::string& bytes, const std::string& part) const {
+    try {
+      Read(bytes);
+      ADD_FAILURE() << "read, though " << part;
+    } catch (const UserError& error) {
+      const std::string said = error.what();
+      EXPECT_TRUE(said.starts_with(path_.string() + ": ")) << said;
+      EXPECT_NE(said.find(part), std::string::npos) << said;
+      EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+    }
+  }
+
+  fs::path path_;
+};
+
+// A picture in which every pixel differs from its neighbours.
+template <class Pixel>
+cv::Mat Pattern(int type) {
+  cv::Mat picture(48, 64, type);
+  std::uint32_t state = 1;
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x)
+      for (int c = 0; c < Pixel::channels; ++c) {
+        state = state * 1664525 + 1013904223;
+        picture.at<Pixel>(y, x)[c] = static_cast<typename Pixel::value_type>(state >> 16);
+      }
+  return picture;
+}
+
+bool Same(const cv::Mat& a, const cv::Mat& b) {
+  return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0.0;
+}
+
+TEST_F(PictureFile, ColoursComeBackBitForBit) {
+  const cv::Mat colours = Pattern<cv::Vec3b>(CV_8UC3);
+  const Picture png = Read(Encoded(".png", colours));
+  EXPECT_TRUE(Same(png.bgr, colours));
+  EXPECT_EQ(png.note, "");
+  const std::string jpeg = Encoded(".jpg", colours);
+  const Picture read = Read(jpeg);
+  EXPECT_TRUE(Same(read.bgr, cv::imdecode(std::vector<char>(jpeg.begin(), jpeg.end()), cv::IMREAD_COLOR)));
+  EXPECT_EQ(read.note, "");
+}
+
+TEST_F(PictureFile, GreyIsThreeEqualColours) {
+  const cv::Mat grey = Pattern<cv::Vec<unsigned char, 1>>(CV_8UC1);
+  const Picture picture = Read(Encoded(".png", grey));
+  EXPECT_EQ(picture.note, "grey");
+  EXPECT_EQ(picture.bgr.at<cv::Vec3b>(7, 9), cv::Vec3b::all(grey.at<unsigned char>(7, 9)));
+}
+
+TEST_F(PictureFile, OfSixteenBitsTheUpperEightAreTaken) {
+  const cv::Mat deep = Pattern<cv::Vec3w>(CV_16UC3);
+  const Picture picture = Read(Encoded(".png", deep));
+  EXPECT_EQ(picture.note, "upper 8 of 16 bits");
+  for (int c = 0; c < 3; ++c) EXPECT_EQ(picture.bgr.at<cv::Vec3b>(5, 6)[c], deep.at<cv::Vec3w>(5, 6)[c] >> 8);
+}
+
+TEST_F(PictureFile, ThermalCountsAreNoColours) {
+  ExpectRefusal(Encoded(".png", cv::Mat(48, 64, CV_16UC1, cv::Scalar(7315))),
+                "has one channel of 16 bits (a thermal picture, raw counts)");
+}
+
+TEST_F(PictureFile, WhatIsSeeThroughLiesOverBlack) {
+  cv::Mat opaque = Pattern<cv::Vec4b>(CV_8UC4);
+  for (int y = 0; y < opaque.rows; ++y)
+    for (int x = 0; x < opaque.cols; ++x) opaque.at<cv::Vec4b>(y, x)[3] = 255;
+  const Picture plain = Read(Encoded(".png", opaque));
+  EXPECT_EQ(plain.note, "");
+  EXPECT_EQ(plain.bgr.at<cv::Vec3b>(3, 4)[2], opaque.at<cv::Vec4b>(3, 4)[2]);
+  opaque.at<cv::Vec4b>(3, 4) = {200, 100, 51, 0};
+  opaque.at<cv::Vec4b>(3, 5) = {200, 100, 51, 51};
+  const Picture through = Read(Encoded(".png", opaque));
+  EXPECT_EQ(through.note, "see-through parts as black");
+  EXPECT_EQ(through.bgr.at<cv::Vec3b>(3, 4), cv::Vec3b(0, 0, 0));
+  EXPECT_EQ(through.bgr.at<cv::Vec3b>(3, 5), cv::Vec3b(40, 20, 10));
+}
+
+TEST_F(PictureFile, PicturesThatAreNotWholeAreRefused) {
+  const std::string jpeg = Encoded(".jpg", Pattern<cv::Vec3b>(CV_8UC3));
+  ExpectRefusal(jpeg.substr(0, jpeg.size() / 2), "is cut short");
+  ExpectRefusal(jpeg.substr(0, jpeg.size() / 2) + "\xff\xd9", "is damaged or cut short: ");
+  ExpectRefusal(jpeg.substr(0, jpeg.size() / 2) + std::string(jpeg.size() / 2, '\0'), "is cut short");
+  const std::string png = Encoded(".png", Pattern<cv::Vec3b>(CV_8UC3));
+  ExpectRefusal(png.substr(0, png.size() / 2), "is cut short");
+  std::string turned = png;
+  turned[png.size() / 2] ^= 1;
+  ExpectRefusal(turned, "is damaged or cut short: ");
+  ExpectRefusal("GIF89a", "is neither a PNG nor a JPEG picture");
+}
+
+TEST_F(PictureFile, SidesAreRefusedByTheHeaderAlone) {
+  const std::string header("\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\xea\x60\0\0\xea\x60\x08\x02\0\0\0", 29);
+  ExpectRefusal(header, "a picture of 60000 x 60000 pixels; allowed: sides of 1 .. 20000");
+  ExpectRefusal(header + std::string("\0\0\0\0\0\0\0\0IEND\xae\x42\x60\x82", 16), "60000 x 60000");
+}
+
+}  // namespace
+}  // namespace ed3r
