@@ -119,19 +119,22 @@ namespace {
 struct ReportOptions {
   std::string dir, out;
   std::string cache = "results/cache";
-  bool json = false, no_figures = false, no_missions = false, force = false;
+  bool json = false, no_figures = false, no_missions = false, force = false, claims = false;
 };
 
 int MakeReportOf(const ReportOptions& options) {
-  ResultReader(options.dir).CheckWhole();  // before anything is written
+  ResultReader reader(options.dir);
+  reader.CheckWhole();  // before anything is written
   const RunResults results = LoadRun(options.dir);
-  const Report report = MakeReport(results);
+  const Report report = MakeReport(results, ReadDepartures(reader),
+                                   options.claims ? Judging::kEverything : Judging::kWhatThePaperFlew);
   FolderOptions folder{.dir = options.dir,
                        .out = options.out,
                        .figures = !options.no_figures,
                        .force = options.force,
                        .command = ""};
-  folder.command = "ed3r report " + options.dir + (options.out.empty() ? "" : " --out " + options.out);
+  folder.command = "ed3r report " + options.dir + (options.out.empty() ? "" : " --out " + options.out) +
+                   (options.claims ? " --claims" : "");
   if (folder.out.empty()) folder.out = options.dir + "/report";
   WatchedMissions watched;
   if (!options.no_missions) watched = WatchMissions(report, results, options.dir, options.cache);
@@ -163,6 +166,10 @@ Command AddReport(CLI::App& program) {
   parser->add_option("DIR", options->dir, "Run directory")->required();
   parser->add_option("--out", options->out, "Folder to write to; default DIR/report")->check(NotEmpty());
   parser->add_flag("--force", options->force, "Write into a folder that is neither empty nor a report, too");
+  parser->add_flag(
+      "--claims", options->claims,
+      "Judge the paper's claims though another robot, world or parameter was flown than the paper's; "
+      "otherwise verdicts are left out then");
   parser->add_flag("--no-figures", options->no_figures,
                    "Draw nothing (no Python); the figures' data are still written");
   parser->add_flag("--no-missions", options->no_missions,
