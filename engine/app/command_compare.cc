@@ -13,9 +13,11 @@
 #include "engine/store/reader.h"
 #include "studies/metrics/number_text.h"
 #include "studies/report/compare_page.h"
+#include "studies/report/departures.h"
 #include "studies/report/load.h"
 #include "studies/report/provenance.h"
 #include "studies/report/web_page.h"
+#include "studies/tables/layout.h"
 #include "studies/variants/variants.h"
 
 namespace ed3r {
@@ -26,7 +28,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::vector<std::string> dirs;
   std::string out;
-  bool json = false;
+  bool json = false, claims = false;
 };
 
 // A run is called by its folder.
@@ -35,8 +37,28 @@ std::string LabelOf(const std::string& dir) {
   return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
-nlohmann::ordered_json JsonOf(const VariantStudy& study) {
+// What keeps claims from being judged, a line for each run; none where all may be.
+std::vector<std::string> DepartureLines(const RunDepartures& departures,
+                                        const std::vector<std::string>& labels, bool claims) {
+  std::vector<std::string> lines;
+  for (const std::string& label : labels)
+    if (const Departures& of_run = departures.at(label); !of_run.PaperFlown())
+      lines.push_back(fmt::format("{}: not as in the paper: {}.", label, DepartureText(of_run.results)));
+  if (!lines.empty())
+    lines.push_back(claims ? "The paper's claims are judged all the same (--claims)."
+                           : "So the paper's claims are not judged; --claims judges them all the same.");
+  return lines;
+}
+
+std::string Wrapped(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += Wrap(line, "", kTerminalWidth);
+  return lines.empty() ? text : text + '\n';
+}
+
+nlohmann::ordered_json JsonOf(const VariantStudy& study, const std::vector<std::string>& departures) {
   nlohmann::ordered_json json = {{"runs", study.variants},
+                                 {"departures", departures},
                                  {"differences", nlohmann::ordered_json::array()},
                                  {"changed_verdicts", nlohmann::ordered_json::array()}};
   for (const VariantDifference& d : study.differences)
@@ -66,18 +88,19 @@ nlohmann::ordered_json ManifestOf(const std::vector<std::string>& dirs,
   return runs;
 }
 
-void WritePage(const std::vector<ComparedRun>& runs, const VariantStudy& study, const Options& options) {
+void WritePage(const std::vector<ComparedRun>& runs, const VariantStudy& study,
+               const std::vector<std::string>& departures, const Options& options) {
   const FoundBundle found = FindWebBundle("report");
   if (!found.bundle) {
     fmt::print(stderr, "note: {}\n", found.why_not);
     return;
   }
-  const std::string command =
-      fmt::format("ed3r compare {} --out {}", fmt::join(options.dirs, " "), options.out);
+  const std::string command = fmt::format("ed3r compare {} --out {}{}", fmt::join(options.dirs, " "),
+                                          options.out, options.claims ? " --claims" : "");
   WriteFile(
       fs::path(options.out) / "index.html",
       SelfContainedPage(fmt::format("{} compared", fmt::join(study.variants, ", ")), *found.bundle,
-                        ComparePageData(runs, study, command),
+                        ComparePageData(runs, study, departures, command),
                         "<p>This page is a program: it needs scripts. The same is in compare.txt.</p>"));
 }
 
@@ -88,26 +111,31 @@ int Compare(const Options& options) {
   std::vector<ComparedRun> runs;
   std::vector<std::string> labels;
   std::set<std::uint64_t> seeds;
+  RunDepartures departures;
   for (const std::string& dir : options.dirs) {
     const std::string label = LabelOf(dir);
     if (std::find(labels.begin(), labels.end(), label) != labels.end())
       throw UserError(
           fmt::format("{}: two of the runs are in folders called '{}'; their names must differ", dir, label));
     labels.push_back(label);
-    ResultReader(dir).CheckWhole();
+    ResultReader reader(dir);
+    reader.CheckWhole();
     const RunResults run = LoadRun(dir);
-    seeds.insert(ResultReader(dir).Layout().seed);
+    seeds.insert(reader.Layout().seed);
     if (!VariantsOf(run.arms).empty())
       throw UserError(fmt::format("{}: has variants of its own; 'ed3r report {}' compares them", dir, dir));
+    departures[label] = ReadDepartures(reader)[""];
     for (ArmData& arm : AsVariant(run.arms, label)) arms.push_back(std::move(arm));
     runs.push_back({label, dir, run});
   }
-  VariantStudy study = CompareVariants(arms);
+  const std::vector<std::string> notes = DepartureLines(departures, labels, options.claims);
+  VariantStudy study =
+      CompareVariants(arms, notes.empty() || options.claims ? Verdicts::kJudged : Verdicts::kLeftOut);
   study.same_draws = seeds.size() == 1;
   if (study.differences.empty())
     throw UserError(
         fmt::format("{}: no arm of the other runs has the name of one of its arms", options.dirs.front()));
-  const std::string text = VariantText(study);
+  const std::string text = Wrapped(notes) + VariantText(study);
   if (!options.out.empty()) {
     const fs::path out(options.out);
     MakeFolder(out);
@@ -115,9 +143,9 @@ int Compare(const Options& options) {
     WriteFile(out / "differences.csv", DifferenceCsv(study));
     WriteFile(out / "verdicts.csv", VariantVerdictCsv(study));
     WriteFile(out / "manifest.json", ManifestOf(options.dirs, labels).dump(2) + "\n");
-    WritePage(runs, study, options);
+    WritePage(runs, study, notes, options);
   }
-  fmt::print("{}", options.json ? JsonOf(study).dump(2) + "\n" : text);
+  fmt::print("{}", options.json ? JsonOf(study, notes).dump(2) + "\n" : text);
   return kDone;
 }
 
@@ -134,6 +162,9 @@ Command AddCompare(Program& program) {
       .Option("--out", options->out,
               "Folder for index.html, compare.txt, differences.csv, verdicts.csv and manifest.json")
       .Path();
+  parser.Flag(
+      "--claims", options->claims,
+      "Judge the paper's claims though a run flew another robot, world or parameter than the paper's");
   parser.Flag("--json", options->json, "Print JSON");
   parser.Footer(
       "Runs of one seed meet the same scenarios; runs of different seeds are compared as independent draws "

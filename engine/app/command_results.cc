@@ -118,19 +118,22 @@ namespace {
 struct ReportOptions {
   std::string dir, out;
   std::string cache = "results/cache";
-  bool json = false, no_figures = false, no_missions = false, force = false;
+  bool json = false, no_figures = false, no_missions = false, force = false, claims = false;
 };
 
 int MakeReportOf(const ReportOptions& options) {
-  ResultReader(options.dir).CheckWhole();  // before anything is written
+  ResultReader reader(options.dir);
+  reader.CheckWhole();  // before anything is written
   const RunResults results = LoadRun(options.dir);
-  const Report report = MakeReport(results);
+  const Report report = MakeReport(results, ReadDepartures(reader),
+                                   options.claims ? Judging::kEverything : Judging::kWhatThePaperFlew);
   FolderOptions folder{.dir = options.dir,
                        .out = options.out,
                        .figures = !options.no_figures,
                        .force = options.force,
                        .command = ""};
-  folder.command = "ed3r report " + options.dir + (options.out.empty() ? "" : " --out " + options.out);
+  folder.command = "ed3r report " + options.dir + (options.out.empty() ? "" : " --out " + options.out) +
+                   (options.claims ? " --claims" : "");
   if (folder.out.empty()) folder.out = options.dir + "/report";
   WatchedMissions watched;
   if (!options.no_missions) watched = WatchMissions(report, results, options.dir, options.cache);
@@ -162,6 +165,9 @@ Command AddReport(Program& program) {
   parser.Option("DIR", options->dir, "Run directory").Required();
   parser.Option("--out", options->out, "Folder to write to; default DIR/report").Path();
   parser.Flag("--force", options->force, "Write into a folder that is neither empty nor a report, too");
+  parser.Flag("--claims", options->claims,
+              "Judge the paper's claims though another robot, world or parameter was flown than the paper's; "
+              "otherwise verdicts are left out then");
   parser.Flag("--no-figures", options->no_figures,
               "Draw nothing (no Python); the figures' data are still written");
   parser.Flag("--no-missions", options->no_missions,
@@ -169,7 +175,7 @@ Command AddReport(Program& program) {
   parser.Option("--cache", options->cache, "Where trained networks are kept; default results/cache").Path();
   parser.Flag("--json", options->json, "Print JSON");
   parser.Footer(
-      "Figures are drawn by scripts/plot.py, found in the source tree that this program was built from or in "
+      "Figures are drawn by scripts/plot.py, found beside an installed program, in the source tree or in "
       "$ED3R_SCRIPTS, with /usr/bin/python3 or $ED3R_PYTHON, which needs matplotlib. Without them all else "
       "is written.");
   return {parser, [options] { return MakeReportOf(*options); }};

@@ -43,6 +43,7 @@ std::string NetworksText(const std::vector<ShelvedNetwork>& networks) {
 // One line on what this session did, with the real-time factor per core.
 void Tell(const SweepSummary& summary, const std::string& dir) {
   const RunSummary& flown = summary.flown;
+  if (!summary.grown.empty()) fmt::print("grown: {}\n", summary.grown);
   for (const DamagedMission& damage : summary.repaired)
     fmt::print("repaired: {}: {}\n", damage.name, damage.what);
   fmt::print("{}: {} stored", dir, Counted(summary.stored_before + flown.stored, "mission"));
@@ -99,6 +100,11 @@ int TrainAPart(const SweepPlan& plan, const Options& options, const Shard& shard
   return kDone;
 }
 
+std::string TableOf(const std::string& dir) {
+  ResultReader reader(dir);
+  return ReportText(MakeReport(LoadRun(dir), ReadDepartures(reader)));
+}
+
 int Run(const Options& options) {
   const SweepPlan plan = options.sweep.Load();
   const Shard shard = ParseShard(options.shard);
@@ -131,7 +137,7 @@ int Run(const Options& options) {
 
   std::string table;
   if (!options.quiet) {
-    if (!summary.flown.interrupted) table = ReportText(MakeReport(LoadRun(sweep.dir)));
+    if (!summary.flown.interrupted) table = TableOf(sweep.dir);
     if (!summary.flown.interrupted) fmt::print("{}\n", table);
     Tell(summary, sweep.dir);
   }

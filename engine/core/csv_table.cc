@@ -116,6 +116,16 @@ std::string_view CsvTable::Cell(std::size_t row, std::size_t column) const {
   return Trimmed(std::string_view(text_).substr(span.begin, span.end - span.begin));
 }
 
+std::string CsvTable::Text(std::size_t row, std::size_t column) const {
+  const std::string_view cell = Cell(row, column);
+  std::string text;
+  for (std::size_t i = 0; i < cell.size(); ++i) {
+    text += cell[i];
+    if (cell.substr(i, 2) == "\"\"") ++i;
+  }
+  return text;
+}
+
 double CsvTable::Number(std::size_t row, std::size_t column, double min, double max) const {
   const std::string_view cell = Cell(row, column);
   double value = 0.0;
@@ -134,6 +144,13 @@ std::string CsvTable::Where(std::size_t row, std::size_t column) const {
   const Span& span = cells_[row * columns_.size() + column];
   return fmt::format("{}:{}:{}: {}: ", path_, row_line_[row], span.begin - row_begin_[row] + 1,
                      columns_[column]);
+}
+
+std::string CsvField(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  return quoted + '"';
 }
 
 }  // namespace ed3r

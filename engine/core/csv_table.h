@@ -40,6 +40,8 @@ class CsvTable {
   std::size_t Column(std::string_view name, std::string_view what) const;
 
   std::string_view Cell(std::size_t row, std::size_t column) const;
+  // A cell as it was before CsvField wrote it: with its doubled quotes undone.
+  std::string Text(std::size_t row, std::size_t column) const;
   // Throws UserError unless the cell is one finite number within [min, max].
   double Number(std::size_t row, std::size_t column, double min, double max) const;
 
@@ -63,5 +65,8 @@ class CsvTable {
   std::vector<std::size_t> row_begin_;
   std::vector<int> row_line_;
 };
+
+// One field as it is written, in quotes where it must be.
+std::string CsvField(std::string_view text);
 
 }  // namespace ed3r

@@ -86,7 +86,9 @@ std::vector<ResultColumn> RunReader::Timesteps(const std::string& arm) {
   return table;
 }
 
-std::string RunReader::ReportText() const { return ReportJson(MakeReport(LoadRun(reader_.dir()))).dump(); }
+std::string RunReader::ReportText() const {
+  return ReportJson(MakeReport(LoadRun(reader_.dir()), ReadDepartures(reader_))).dump();
+}
 
 std::string RunReader::Digest() { return DigestOf(reader_); }
 

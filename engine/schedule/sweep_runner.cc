@@ -122,7 +122,8 @@ class Stages {
     if (options_.only_failed) again_ = store_->Failed();
     for (std::size_t i = 0; i < plan_.stages.size() && !summary_.flown.interrupted; ++i) {
       if (!options_.stage.empty() && plan_.stages[i].name != options_.stage) continue;
-      if (!options_.stage.empty())
+      // A stage that builds on nothing may be of a plan that has grown since the foundation was merged last.
+      if (!options_.stage.empty() && !plan_.stages[i].after.empty())
         CheckReady(plan_, plan_.stages[i], Foundation(), FoundationDir(), options_.half_width);
       if (options_.only_failed && !AnyAgainFrom(static_cast<int>(i))) break;
       if (!Ready(plan_.stages[i])) {

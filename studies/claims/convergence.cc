@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/csv_table.h"
 #include "studies/metrics/metrics.h"
 #include "studies/metrics/number_text.h"
-#include "studies/paper/csv.h"
 
 namespace ed3r {
 namespace {

@@ -5,6 +5,7 @@
 // Pure functions, any thread.
 #pragma once
 
+#include "studies/paper/arms.h"
 #include "studies/paper/claims.h"
 
 namespace ed3r {
@@ -17,7 +18,7 @@ double MarginOf(const Claim& claim, double paper);
 bool IsPercentage(const Claim& claim);
 
 // Missions of an arm in the paper. What chance leaves open of its numbers is taken from the spread of our missions.
-inline constexpr double kPaperMissions = 850, kPaperMissionsInP85 = 128;
+inline constexpr double kPaperMissions = kPaperOnlineMissions, kPaperMissionsInP85 = 128;
 
 enum class SizeVerdict {
   kEquivalent,  // all of the interval lies within the margin, which begins where the rounding ends

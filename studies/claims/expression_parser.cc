@@ -10,6 +10,7 @@
 #include "studies/claims/expression.h"
 #include "studies/metrics/arm.h"
 #include "studies/metrics/definitions.h"
+#include "studies/paper/arms.h"
 
 namespace ed3r {
 namespace {
@@ -18,9 +19,12 @@ using Kind = Quantity::Kind;
 using List = std::vector<Quantity>;
 
 const std::vector<std::string>& OnlineArms() {
-  static const std::vector<std::string> arms = {"ed3r-65",    "ed3r-75",    "ed3r-85",
-                                                "ablation-1", "ablation-2", "ablation-3",
-                                                "ablation-4", "ecd2r",      "rbs"};
+  static const std::vector<std::string> arms = [] {
+    std::vector<std::string> names;
+    for (const PaperArm& arm : PaperArms())
+      if (!arm.warmup) names.emplace_back(arm.name);
+    return names;
+  }();
   return arms;
 }
 

@@ -9,6 +9,7 @@
 #include "engine/rfnn/features.h"
 #include "studies/claims/expression.h"
 #include "studies/metrics/metrics.h"
+#include "studies/paper/arms.h"
 
 namespace ed3r {
 namespace {
@@ -75,8 +76,7 @@ Judgement Samples(const ArmData& warmup, double paper) {
   const bool inside = judged.lo - kHalfThousand <= paper && paper <= judged.hi + kHalfThousand;
   judged.verdict = inside ? Verdict::kReproduced : Verdict::kDiffers;
   judged.why = fmt::format("{:.1f} timesteps in each of {:.0f} warm-up missions", timesteps.value, missions);
-  constexpr double kMissions = 2040;  // of which the paper took them
-  if (missions != kMissions) judged.verdict = Verdict::kNotMeasured, judged.why = kOtherLength;
+  if (missions != kPaperWarmupMissions) judged.verdict = Verdict::kNotMeasured, judged.why = kOtherLength;
   return judged;
 }
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/csv_table.h"
 #include "studies/claims/equivalence.h"
 #include "studies/metrics/number_text.h"
-#include "studies/paper/csv.h"
 #include "studies/tables/layout.h"
 
 namespace ed3r {

@@ -11,10 +11,10 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/core/csv_table.h"
 #include "engine/core/file.h"
 #include "engine/store/columns.h"
 #include "engine/store/words.h"
-#include "studies/paper/csv.h"
 
 namespace ed3r {
 namespace {

@@ -7,14 +7,14 @@
 #include <set>
 
 #include "engine/core/check.h"
-#include "studies/paper/csv.h"
+#include "engine/core/csv_table.h"
 
 namespace ed3r {
 namespace {
 
-const CsvRow kColumns = {"id",          "where",        "strategy",   "metric",     "kind",
-                         "paper_value", "unit",         "source",     "comparison", "tolerance",
-                         "exact_words", "inconsistent", "unmeasured", "note"};
+const std::vector<std::string> kColumns = {
+    "id",     "where",      "strategy",  "metric",      "kind",         "paper_value", "unit",
+    "source", "comparison", "tolerance", "exact_words", "inconsistent", "unmeasured",  "note"};
 const std::set<std::string> kKinds = {"value", "share", "ratio", "order", "setup"};
 const std::set<std::string> kSources = {"", "printed", "about", "derived", "construction"};
 
@@ -49,16 +49,16 @@ int Rank(const Claim& claim, const PaperValue& value) {
 }  // namespace
 
 std::vector<Claim> ParseClaims(std::string_view csv, std::string_view name) {
-  const std::vector<CsvRow> rows = ParseCsv(csv, name);
-  if (rows.empty() || rows.front() != kColumns)
+  const CsvTable table = CsvTable::Parse(std::string(name), std::string(csv));
+  if (table.columns() != kColumns)
     throw UserError(fmt::format("{}:1: expected the columns {}", name, fmt::join(kColumns, ",")));
   std::vector<Claim> claims;
   std::set<std::string> ids;
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    const CsvRow& row = rows[i];
-    // The rows of claims stand on one line each.
+  for (std::size_t r = 0; r < table.rows(); ++r) {
+    std::vector<std::string> row;
+    for (std::size_t c = 0; c < kColumns.size(); ++c) row.push_back(table.Text(r, c));
     const auto refuse = [&](std::string_view column, const std::string& value, std::string_view allowed) {
-      throw UserError(fmt::format("{}:{}: {}: '{}' is not {}", name, i + 1, column, value, allowed));
+      throw UserError(fmt::format("{}:{}: {}: '{}' is not {}", name, table.Line(r), column, value, allowed));
     };
     if (!ids.insert(row[0]).second) refuse("id", row[0], "a new id");
     if (kKinds.count(row[4]) == 0) refuse("kind", row[4], fmt::format("one of {}", fmt::join(kKinds, ", ")));

@@ -73,18 +73,21 @@ std::vector<std::string> ComparisonSentences(const VariantStudy& study) {
     int changed = 0, contradict = 0;
     for (const VerdictChange& change : study.changes)
       if (change.variant == name) ++changed, contradict += change.Contradicts();
-    sentences.push_back(fmt::format(
-        "{} against {}: {} of {} differences of arms in energy, success and duration are certain (95 %, {}); "
-        "{} "
-        "verdicts on the paper's claims change, {} of them from one side to the other.",
+    std::string sentence = fmt::format(
+        "{} against {}: {} of {} differences of arms in energy, success and duration are certain (95 %, {})",
         name, study.variants.front(), certain, all,
-        study.same_draws ? "paired by scenario" : "other draws at the same places", changed, contradict));
+        study.same_draws ? "paired by scenario" : "other draws at the same places");
+    if (!study.verdicts.empty())
+      sentence +=
+          fmt::format("; {} verdicts on the paper's claims change, {} of them from one side to the other",
+                      changed, contradict);
+    sentences.push_back(sentence + '.');
   }
   return sentences;
 }
 
 Json ComparePageData(const std::vector<ComparedRun>& runs, const VariantStudy& study,
-                     const std::string& command) {
+                     const std::vector<std::string>& departures, const std::string& command) {
   ED3R_CHECK(runs.size() > 1, "runs to compare");
   Together together;
   for (const ComparedRun& run : runs) Add(run, together);
@@ -111,6 +114,7 @@ Json ComparePageData(const std::vector<ComparedRun>& runs, const VariantStudy& s
                             .report_command = command,
                             .figures_note = ""});
   data["answer"] = ComparisonSentences(study);
+  data["departures"] = departures;
   data["compared"] = study.variants;
   for (std::size_t a = 0; a < together.origins.size(); ++a) {
     const Together::Origin& origin = together.origins[a];

@@ -15,9 +15,10 @@ struct ComparedRun {
 };
 
 // The document of page_data.h. Arms are keyed LABEL/STAGE/NAME; the paper's values stand beside each; claims are judged by the
-// first run; `study` compares the others with it, and its differences are the page's answer. Tables and figures are none: each
+// first run; `study` compares the others with it, and its differences are the page's answer; `departures` are sentences for its head. Tables and figures are none: each
 // run's own report has them. Throws UserError as LoadRun.
 nlohmann::ordered_json ComparePageData(const std::vector<ComparedRun>& runs, const VariantStudy& study,
+                                       const std::vector<std::string>& departures,
                                        const std::string& command);
 
 // One sentence on each run after the first: how many differences are certain, how many verdicts change.

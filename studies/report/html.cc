@@ -153,6 +153,8 @@ std::string ReportContent(const PageInputs& inputs) {
       "{2}<a "
       "href=\"#tables\">Tables</a> <a href=\"#figures\">Figures</a></nav></header>\n",
       HtmlText(report.name), kPageStyle, report.claims.HasArms() ? "<a href=\"#verdicts\">Claims</a> " : "");
+  for (const std::string& note : report.DepartureNotes())
+    html += "<p class=\"note\">" + HtmlText(note) + "</p>\n";
   html += WhatWasRun(inputs.provenance);
   html += "<section id=\"headline\"><h2>Results</h2>\n";
   if (report.tables.empty())

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "engine/store/reader.h"
+#include "engine/sweep/arm_id.h"
 #include "studies/figures/run_source.h"
 #include "studies/report/page_data.h"
 
@@ -99,7 +100,7 @@ std::vector<ChosenMission> ChooseMissions(const Report& report, const RunResults
   std::vector<ChosenMission> chosen;
   for (const Choice& choice : Choose(missions.arms, WarmupStages(dir, missions.arms))) {
     const ArmData& arm = missions.arms[choice.arm];
-    chosen.push_back({fmt::format("{}/{}{}/{}", arm.stage, arm.name, missions.ending,
+    chosen.push_back({fmt::format("{}/{}/{}", arm.stage, ArmId{arm.name, missions.variant}.Text(),
                                   missions.numbers[choice.arm][choice.mission]),
                       choice.what});
   }

@@ -9,6 +9,7 @@
 
 #include "engine/core/check.h"
 #include "engine/store/reader.h"
+#include "engine/sweep/arm_id.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/paper/claims.h"
 #include "studies/report/page_answer.h"
@@ -56,7 +57,7 @@ Json ArmJson(const PageDataInputs& inputs, std::size_t a) {
   for (const char* key : {"key", "stage", "name", "label", "warmup", "strategy", "eta_min_pct", "missions",
                           "failed", "missing", "networks", "convergence", "world"})
     json[key] = drawn.at(key);
-  json["stored_name"] = metrics.stage + '/' + metrics.name + inputs.missions.ending;
+  json["stored_name"] = metrics.stage + '/' + ArmId{metrics.name, inputs.missions.variant}.Text();
   json["paper"] = Json::object();
   for (std::size_t m = 0; m < metrics.values.size(); ++m)
     if (Json paper = PaperJson(metrics, m); !paper.is_null())
@@ -176,16 +177,14 @@ std::vector<int> NumbersOf(ResultReader& reader, const std::string& stored_name,
 
 PageMissions ReadPageMissions(const Report& report, const RunResults& results, const std::string& dir) {
   ResultReader reader(dir);
-  const std::vector<std::string>& variants = report.variants.variants;
   PageMissions page;
-  page.ending = variants.empty() ? "" : '@' + variants.front();
-  const std::vector<ArmData> arms =
-      variants.empty() ? results.arms : ArmsOfVariant(results.arms, variants.front());
+  page.variant = report.Variant();
+  const std::vector<ArmData> arms = ArmsOfVariant(results.arms, page.variant);
   for (const ArmMetrics& told : report.told) {
     const ArmData* arm = Find(arms, told);
     ED3R_CHECK(arm != nullptr, "the missions of an arm that is told");
     page.arms.push_back(*arm);
-    page.numbers.push_back(NumbersOf(reader, arm->name + page.ending, *arm));
+    page.numbers.push_back(NumbersOf(reader, ArmId{arm->name, page.variant}.Text(), *arm));
   }
   return page;
 }
@@ -197,6 +196,7 @@ Json MakePageData(const PageDataInputs& inputs) {
   Json data = {{"format", kFormat},           {"name", report.name},
                {"question", inputs.question}, {"answer", AnswerSentences(report, warmups)},
                {"metrics", MetricsJson()},    {"arms", Json::array()}};
+  data["departures"] = report.DepartureNotes();
   for (std::size_t a = 0; a < report.told.size(); ++a) data["arms"].push_back(ArmJson(inputs, a));
   data["slices"] = SlicesJson(inputs.missions.arms, report.told);
   data["histograms"] = HistogramsJson(inputs.missions.arms);

@@ -14,7 +14,7 @@ namespace ed3r {
 struct PageMissions {
   std::vector<ArmData> arms;              // those that the report tells, in its order
   std::vector<std::vector<int>> numbers;  // of their missions, for `ed3r replay`
-  std::string ending;                     // "@VARIANT" that the store's names of these arms have; mostly ""
+  std::string variant;                    // that the store has these arms under; mostly ""
 };
 
 // The missions of the arms told, with their numbers. Throws UserError as LoadRun.
@@ -34,7 +34,7 @@ struct PageDataInputs {
   nlohmann::ordered_json viewers = nlohmann::ordered_json::array();
 };
 
-// {"format", "name", "question", "answer": [sentences], "metrics", "arms", "slices", "histograms", "points", "failures",
+// {"format", "name", "question", "answer": [sentences], "departures": [sentences], "metrics", "arms", "slices", "histograms", "points", "failures",
 // "known_sites", "broken", "claims", "tables", "world", "missions_shown", "variants", "figures", "run": provenance for people,
 // "viewers"}; parts as in page_slices.h and figure_data.h. Pure.
 nlohmann::ordered_json MakePageData(const PageDataInputs& inputs);

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "engine/core/file.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/paper/claims.h"
 #include "studies/tables/data_files.h"
+#include "studies/tables/layout.h"
 
 namespace ed3r {
 namespace {
@@ -22,13 +24,42 @@ void WriteTable(const StudyTable& table, const fs::path& folder) {
   WriteFile(folder / (table.id + ".json"), JsonTable(table, claims).dump(2) + '\n');
 }
 
+// Whether nothing that departs keeps the claims of this variant from being judged.
+bool MayJudge(const Report& report, const std::string& variant) {
+  const auto found = report.departures.find(variant);
+  return report.judging == Judging::kEverything || found == report.departures.end() ||
+         found->second.PaperFlown();
+}
+
+bool MayJudgeAll(const Report& report) {
+  return std::all_of(report.departures.begin(), report.departures.end(),
+                     [&](const auto& entry) { return MayJudge(report, entry.first); });
+}
+
+ClaimStudy ClaimsOf(const Report& report, const std::vector<ArmData>& arms) {
+  if (!report.variants.verdicts.empty()) return report.variants.verdicts.front();
+  if (MayJudge(report, report.Variant())) return JudgeClaims(PaperClaims(), arms);
+  ClaimStudy unjudged;
+  for (const ArmMetrics& arm : report.told) unjudged.networks = std::max(unjudged.networks, arm.networks);
+  return unjudged;
+}
+
 }  // namespace
 
-Report MakeReport(const RunResults& results) {
+std::string Report::Variant() const { return variants.variants.empty() ? "" : variants.variants.front(); }
+
+std::vector<std::string> Report::DepartureNotes() const {
+  return DepartureSentences(departures, Variant(), judging);
+}
+
+Report MakeReport(const RunResults& results, const RunDepartures& departures, Judging judging) {
   Report report;
   report.name = results.name;
   report.mixed_code = results.mixed_code;
-  report.variants = CompareVariants(results.arms);
+  report.departures = departures;
+  report.judging = judging;
+  report.variants =
+      CompareVariants(results.arms, MayJudgeAll(report) ? Verdicts::kJudged : Verdicts::kLeftOut);
   const bool variants = !report.variants.variants.empty();
   const std::vector<ArmData> first =
       variants ? ArmsOfVariant(results.arms, report.variants.variants.front()) : std::vector<ArmData>();
@@ -41,7 +72,7 @@ Report MakeReport(const RunResults& results) {
     p85.push_back(ComputeP85(arm));
   }
   if (!variants) report.told = report.arms;
-  report.claims = variants ? report.variants.verdicts.front() : JudgeClaims(PaperClaims(), arms);
+  report.claims = ClaimsOf(report, arms);
   report.convergence = Convergence(arms);
   report.look_forward = LookForwardOf(arms);
   report.tables = MakeStudyTables(report.told, p85);
@@ -54,7 +85,9 @@ std::string ReportText(const Report& report) {
   if (report.arms.empty()) return text + "\n\nNo missions.\n";
   if (report.claims.networks > 1)
     text += fmt::format(", {} trained networks of each kind", report.claims.networks);
-  text += "\n\n";
+  text += '\n';
+  for (const std::string& note : report.DepartureNotes()) text += Wrap(note, "", kTerminalWidth);
+  text += '\n';
   if (!report.variants.variants.empty())
     text += fmt::format("Variant '{}':\n\n", report.variants.variants.front());
   text += ResultTable(report.told, PaperClaims());
@@ -71,6 +104,9 @@ std::string ReportText(const Report& report) {
 nlohmann::ordered_json ReportJson(const Report& report) {
   nlohmann::ordered_json json = {{"name", report.name}};
   if (!report.mixed_code.empty()) json["mixed_code"] = report.mixed_code;
+  const auto departures = report.departures.find(report.Variant());
+  json["paper"] = DeparturesJson(departures == report.departures.end() ? Departures() : departures->second,
+                                 report.judging);
   json.update(ResultJson(report.arms, PaperClaims()));
   json["generalisation"] = GeneralisationJson(report.generalisation);
   json["look_forward"] = LookForwardJson(report.look_forward);

@@ -10,6 +10,7 @@
 #include "studies/claims/verdicts.h"
 #include "studies/metrics/arm.h"
 #include "studies/metrics/metrics.h"
+#include "studies/report/departures.h"
 #include "studies/tables/look_forward_table.h"
 #include "studies/tables/result_table.h"
 #include "studies/tables/study_table.h"
@@ -28,24 +29,32 @@ struct RunResults {
 struct Report {
   std::string name;
   std::string mixed_code;  // as in RunResults
+  RunDepartures departures;
+  Judging judging = Judging::kWhatThePaperFlew;
   std::vector<ArmMetrics> arms;
   // What tables and verdicts tell: all arms, or those of the first variant where the study has variants.
   std::vector<ArmMetrics> told;
   std::vector<Generalisation> generalisation;  // one per arm told
   std::vector<StudyTable> tables;              // for papers and pages
-  ClaimStudy claims;
+  ClaimStudy claims;                           // without any where what is told departs from the paper
   VariantStudy variants;
   std::vector<ConvergencePoint> convergence;  // of the arms told
   std::vector<LookForward> look_forward;      // of the arms told that ask a network
+
+  std::string Variant() const;                      // that is told; "" without variants
+  std::vector<std::string> DepartureNotes() const;  // for its head
 };
 
-Report MakeReport(const RunResults& results);
+// `departures`: of all variants (ReadDepartures); a variant that is not in it is taken for the paper's. Claims are judged
+// as `judging` says, of variants only where all of them may be judged.
+Report MakeReport(const RunResults& results, const RunDepartures& departures,
+                  Judging judging = Judging::kWhatThePaperFlew);
 
-// For a terminal of kTerminalWidth characters: heading, result table, generalisation table, look-forward errors, verdicts on
+// For a terminal of kTerminalWidth characters: heading, departures from the paper, result table, generalisation table, look-forward errors, verdicts on
 // the claims.
 std::string ReportText(const Report& report);
 
-// {"name", "arms": as ResultJson, "generalisation": as GeneralisationJson, "claims": as VerdictJson}.
+// {"name", "paper": as DeparturesJson, "arms": as ResultJson, "generalisation": as GeneralisationJson, "claims": as VerdictJson}.
 nlohmann::ordered_json ReportJson(const Report& report);
 
 // Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv, convergence.csv, look_forward.csv, where several networks flew

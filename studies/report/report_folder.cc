@@ -7,6 +7,7 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/store/reader.h"
+#include "engine/sweep/arm_id.h"
 #include "studies/figures/draw.h"
 #include "studies/figures/figure_data.h"
 #include "studies/report/html.h"
@@ -24,19 +25,17 @@ constexpr const char* kManifest = "manifest.json";
 // Of a sweep with variants: of its first one.
 nlohmann::ordered_json FigureData(const Report& report, const RunResults& results, const std::string& dir) {
   ResultReader reader(dir);
-  const std::vector<std::string>& variants = report.variants.variants;
-  const std::string ending = variants.empty() ? "" : "@" + variants.front();
+  const std::string variant = report.Variant();
   std::vector<ArmPlan> plans = ReadArmPlans(reader.StoredRecipe().plan_text);
-  std::erase_if(plans, [&](const ArmPlan& plan) { return !plan.name.ends_with(ending); });
+  std::erase_if(plans, [&](const ArmPlan& plan) { return ArmId::Of(plan.name).variant != variant; });
   std::vector<ShownMission> missions = PickMissions(reader, plans);
   FoundScene found;
   for (const ArmPlan& plan : plans)
     if (!missions.empty() && plan.stage == missions.front().stage && plan.name == missions.front().arm)
       found = FindScene(reader, plan.Setting("mission.world"));
-  for (ArmPlan& plan : plans) plan.name.resize(plan.name.size() - ending.size());
-  for (ShownMission& mission : missions) mission.arm.resize(mission.arm.size() - ending.size());
-  const std::vector<ArmData> arms =
-      variants.empty() ? results.arms : ArmsOfVariant(results.arms, variants.front());
+  for (ArmPlan& plan : plans) plan.name = ArmId::Of(plan.name).name;
+  for (ShownMission& mission : missions) mission.arm = ArmId::Of(mission.arm).name;
+  const std::vector<ArmData> arms = ArmsOfVariant(results.arms, variant);
   return MakeFigureData({.name = results.name,
                          .arms = arms,
                          .metrics = report.told,

@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
+#include "engine/core/csv_table.h"
 #include "studies/metrics/number_text.h"
-#include "studies/paper/csv.h"
 #include "studies/tables/paper_cell.h"
 
 namespace ed3r {

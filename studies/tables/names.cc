@@ -2,22 +2,14 @@
 
 #include <utility>
 
+#include "studies/paper/arms.h"
+
 namespace ed3r {
 namespace {
 
+// Of names that are none of the paper's arms.
 constexpr std::pair<std::string_view, std::string_view> kLabels[] = {
-    {"warmup", "Warm-up"},
-    {"warmup-ecd2r", "Warm-up ECD²R"},
     {"ed3r", "ED³R"},
-    {"ed3r-65", "ED³R-65"},
-    {"ed3r-75", "ED³R-75"},
-    {"ed3r-85", "ED³R-85"},
-    {"ablation-1", "Ablation 1"},
-    {"ablation-2", "Ablation 2"},
-    {"ablation-3", "Ablation 3"},
-    {"ablation-4", "Ablation 4"},
-    {"ecd2r", "ECD²R"},
-    {"rbs", "RBS"},
     {"ed3r-p85", "ED³R-75, P85"},
 };
 constexpr std::string_view kP85Ending = "-p85";
@@ -25,6 +17,7 @@ constexpr std::string_view kP85Ending = "-p85";
 }  // namespace
 
 std::string ArmLabel(std::string_view name) {
+  if (const PaperArm* arm = FindPaperArm(name)) return std::string(arm->label);
   for (const auto& [key, label] : kLabels)
     if (key == name) return std::string(label);
   if (name.size() > kP85Ending.size() && name.ends_with(kP85Ending))

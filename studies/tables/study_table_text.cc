@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "engine/core/csv_table.h"
 #include "studies/metrics/number_text.h"
-#include "studies/paper/csv.h"
 #include "studies/tables/layout.h"
 #include "studies/tables/paper_cell.h"
 #include "studies/tables/study_table.h"

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "engine/core/csv_table.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/metrics/definitions.h"
-#include "studies/paper/csv.h"
 #include "studies/tables/layout.h"
 #include "studies/variants/variants.h"
 
@@ -177,7 +177,7 @@ std::string Everywhere(const VariantStudy& study) {
 }
 
 std::string ChangeTable(const VariantStudy& study) {
-  if (!study.verdicts.front().HasArms()) return "";
+  if (study.verdicts.empty() || !study.verdicts.front().HasArms()) return "";
   return fmt::format("\nClaims of the paper judged otherwise than under '{}'\n", study.variants[0]) +
          ChangeCounts(study) + ChangeList(study) + ChangeMatrix(study) + Everywhere(study);
 }

@@ -5,18 +5,13 @@
 #include <limits>
 #include <map>
 
+#include "engine/sweep/arm_id.h"
 #include "studies/metrics/definitions.h"
 #include "studies/paper/claims.h"
 #include "studies/statistics/intervals.h"
 
 namespace ed3r {
 namespace {
-
-std::size_t At(const std::string& name) { return name.find('@'); }
-
-std::string VariantOf(const ArmData& arm) {
-  return At(arm.name) == std::string::npos ? "" : arm.name.substr(At(arm.name) + 1);
-}
 
 double ValueOf(const MissionRecord& mission, const MetricDefinition& metric) {
   return metric.scale * metric.part(mission) / metric.whole(mission);
@@ -116,7 +111,7 @@ void AddChanges(const ClaimStudy& base, const ClaimStudy& here, const std::strin
 std::vector<std::string> VariantsOf(std::span<const ArmData> arms) {
   std::vector<std::string> variants;
   for (const ArmData& arm : arms) {
-    const std::string variant = VariantOf(arm);
+    const std::string variant = ArmId::Of(arm.name).variant;
     if (!variant.empty() && std::find(variants.begin(), variants.end(), variant) == variants.end())
       variants.push_back(variant);
   }
@@ -126,9 +121,10 @@ std::vector<std::string> VariantsOf(std::span<const ArmData> arms) {
 std::vector<ArmData> ArmsOfVariant(std::span<const ArmData> arms, const std::string& variant) {
   std::vector<ArmData> own;
   for (const ArmData& arm : arms) {
-    if (VariantOf(arm) != variant) continue;
+    const ArmId id = ArmId::Of(arm.name);
+    if (id.variant != variant) continue;
     own.push_back(arm);
-    own.back().name.resize(At(arm.name));
+    own.back().name = id.name;
   }
   return own;
 }
@@ -139,20 +135,22 @@ bool VerdictChange::Contradicts() const {
 }
 
 std::vector<ArmData> AsVariant(std::vector<ArmData> arms, const std::string& variant) {
-  for (ArmData& arm : arms) arm.name += "@" + variant;
+  for (ArmData& arm : arms) arm.name = ArmId{arm.name, variant}.Text();
   return arms;
 }
 
-VariantStudy CompareVariants(std::span<const ArmData> arms) {
+VariantStudy CompareVariants(std::span<const ArmData> arms, Verdicts verdicts) {
   VariantStudy study;
   study.variants = VariantsOf(arms);
   if (study.variants.empty()) return study;
   const std::vector<ArmData> base = ArmsOfVariant(arms, study.variants.front());
   for (const std::string& variant : study.variants) {
     const std::vector<ArmData> here = ArmsOfVariant(arms, variant);
-    study.verdicts.push_back(JudgeClaims(PaperClaims(), here));
+    if (verdicts == Verdicts::kJudged) {
+      study.verdicts.push_back(JudgeClaims(PaperClaims(), here));
+      AddChanges(study.verdicts.front(), study.verdicts.back(), variant, study.changes);
+    }
     if (variant == study.variants.front()) continue;
-    AddChanges(study.verdicts.front(), study.verdicts.back(), variant, study.changes);
     for (const ArmData& arm : base) {
       const auto other = std::find_if(here.begin(), here.end(), [&](const ArmData& candidate) {
         return candidate.stage == arm.stage && candidate.name == arm.name;

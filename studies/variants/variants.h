@@ -46,7 +46,7 @@ struct VariantStudy {
   std::vector<std::string>
       variants;  // as flown, the first is what the others are compared with; empty: no variants
   std::vector<VariantDifference> differences;  // by variant, then arm, then metric: all of kComparedMetrics
-  std::vector<ClaimStudy> verdicts;            // one per variant
+  std::vector<ClaimStudy> verdicts;            // one per variant; none where they are left out
   std::vector<VerdictChange> changes;
   bool same_draws =
       true;  // false for runs of different seeds: a scenario is then another draw at the same places
@@ -61,8 +61,11 @@ std::vector<ArmData> ArmsOfVariant(std::span<const ArmData> arms, const std::str
 // The same arms as a variant of that name: for runs that are compared though they were flown apart.
 std::vector<ArmData> AsVariant(std::vector<ArmData> arms, const std::string& variant);
 
+// Whether the paper's claims are judged in every variant.
+enum class Verdicts { kJudged, kLeftOut };
+
 // Nothing is compared, and `variants` is empty, where the arms have no variants.
-VariantStudy CompareVariants(std::span<const ArmData> arms);
+VariantStudy CompareVariants(std::span<const ArmData> arms, Verdicts verdicts);
 
 // Differences, how many verdicts change (of two variants: which), and the sides of orders and comparisons, in lines of at most kTerminalWidth characters; empty without variants.
 std::string VariantText(const VariantStudy& study);

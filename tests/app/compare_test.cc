@@ -48,6 +48,18 @@ TEST_F(CompareTest, DifferencesArePairedAndWritten) {
     EXPECT_FALSE(ReadAll(fs::path(out) / file).empty()) << file;
 }
 
+TEST_F(CompareTest, ThePaperIsJudgedOnlyWhereEveryRunFlewIt) {
+  const std::string both = fmt::format("compare {} {}", Dir("usual"), Dir("small"));
+  const CommandResult left_out = Ed3r(both), asked = Ed3r(both + " --claims");
+  EXPECT_TRUE(
+      left_out.out.starts_with("small: not as in the paper: robot.battery_mah 1000 for 3500.\nSo the paper's "
+                               "claims are not judged; --claims judges them all the same.\n\n"))
+      << left_out.out.substr(0, 300);
+  EXPECT_EQ(left_out.out.find("Claims of the paper"), std::string::npos);
+  EXPECT_NE(asked.out.find("Claims of the paper"), std::string::npos);
+  EXPECT_NE(asked.out.find("judged all the same (--claims)"), std::string::npos);
+}
+
 TEST_F(CompareTest, ARunEqualsItself) {
   fs::copy(Dir("usual"), Dir("again"), fs::copy_options::recursive);
   const CommandResult result = Ed3r(fmt::format("compare {} {}/", Dir("usual"), Dir("again")));

@@ -209,6 +209,56 @@ TEST_F(ReportTest, WithoutItsProgramThePageIsPlainAndTheNoteSaysWhatMakesIt) {
   EXPECT_NE(page.find("id=\"headline\""), std::string::npos);
 }
 
+// What a report of RBS with these settings says of the paper: {report.json, report.txt, index.html}.
+struct Judged {
+  nlohmann::json json;
+  std::string text, page;
+};
+Judged JudgedWith(const ScratchFolder& scratch, const std::string& settings,
+                  const std::string& options = "") {
+  const std::string run = (scratch / "judged").string(), out = (scratch / "judged-report").string();
+  fs::remove_all(run);
+  const CommandResult flown = Ed3r(
+      fmt::format("run {}/sweeps/rbs.yaml --missions 3 --quiet {} --out {}", ED3R_SOURCE_DIR, settings, run));
+  EXPECT_EQ(flown.status, 0) << flown.err;
+  const CommandResult told =
+      Ed3r(fmt::format("report {} --no-figures --no-missions {} --out {}", run, options, out),
+           "ED3R_WEB=/nonexistent");
+  EXPECT_EQ(told.status, 0) << told.err;
+  return {nlohmann::json::parse(ReadAll(fs::path(out) / "report.json")),
+          ReadAll(fs::path(out) / "report.txt"), ReadAll(fs::path(out) / "index.html")};
+}
+
+TEST_F(ReportTest, ThePaperIsJudgedOnlyWhereItWasFlown) {
+  const Judged paper = JudgedWith(out_, "");
+  EXPECT_TRUE(paper.json.at("paper").at("paper_flown"));
+  EXPECT_FALSE(paper.json.at("claims").empty());
+  EXPECT_NE(paper.text.find("In other numbers than the paper: missions of online 3 for 850."),
+            std::string::npos);
+  EXPECT_NE(paper.page.find("id=\"verdicts\""), std::string::npos);
+
+  const Judged heavy = JudgedWith(out_, "--set robot.mass_kg=2.4");
+  EXPECT_FALSE(heavy.json.at("paper").at("claims_judged"));
+  EXPECT_TRUE(heavy.json.at("claims").empty());
+  for (const std::string& text : {heavy.text, heavy.page})
+    EXPECT_NE(text.find("Not as in the paper: robot.mass_kg 2.4 for 1.816. So its claims are not judged;"),
+              std::string::npos)
+        << text.substr(0, 500);
+  EXPECT_EQ(heavy.page.find("id=\"verdicts\""), std::string::npos);
+  EXPECT_FALSE(JudgedWith(out_, "--set robot.mass_kg=2.4", "--claims").json.at("claims").empty());
+}
+
+TEST_F(ReportTest, TheWorldIsThePapersByWhatIsInItsFiles) {
+  const fs::path worlds = std::string(ED3R_SOURCE_DIR) + "/sweeps/worlds";
+  for (const char* file : {"paper.yaml", "ridges.yaml"}) fs::copy_file(worlds / file, out_ / file);
+  const std::string setting = "--set mission.world=" + (out_ / "paper.yaml").string();
+  EXPECT_TRUE(JudgedWith(out_, setting).json.at("paper").at("paper_flown"));
+  std::ofstream(out_ / "ridges.yaml", std::ios::app) << "# mine\n";
+  const Judged mine = JudgedWith(out_, setting);
+  EXPECT_EQ(mine.json.at("paper").at("results").at(0).at("parameter"), "mission.world");
+  EXPECT_TRUE(mine.json.at("claims").empty());
+}
+
 TEST_F(ReportTest, AFolderWithoutARunIsBadInput) {
   const CommandResult result = Ed3r("report " + Out().string());
   EXPECT_EQ(result.status, 2);

@@ -211,6 +211,53 @@ TEST(RunTest, AnotherSweepInTheSameFolderIsRefused) {
   EXPECT_EQ(Digest(scratch / "run"), digest);
 }
 
+TEST(RunTest, ARunGrowsIntoWhatAFreshOneOfThatSizeIs) {
+  const ScratchFolder scratch;
+  const auto sweep = [&](const char* name, const char* masses) {
+    std::ofstream(scratch / name) << "name: grows\nseed: 3\nset: {strategy: rbs, mission.world: " << kSweeps
+                                  << "worlds/paper.yaml}\nsweep: {robot.mass_kg: [" << masses << "]}\n";
+    return (scratch / name).string();
+  };
+  const std::string few = sweep("few.yaml", "1.816, 2.4"), more = sweep("more.yaml", "1.5, 1.816, 2.4");
+  const auto fly = [&](const std::string& file, int missions, const std::string& dir,
+                       const std::string& options = "") {
+    return Ed3r(
+        fmt::format("run {} --missions {} --out {} {}", file, missions, (scratch / dir).string(), options));
+  };
+  ASSERT_EQ(fly(few, 6, "run").status, 0);
+  const CommandResult grown = fly(few, 12, "run");
+  EXPECT_EQ(grown.status, 0) << grown.err;
+  EXPECT_NE(grown.out.find("grown: stage online: 12 missions per arm for 6\n"), std::string::npos)
+      << grown.out;
+  EXPECT_NE(grown.out.find("24 missions stored (12 before)"), std::string::npos) << grown.out;
+  ASSERT_EQ(fly(few, 12, "fresh12").status, 0);
+  EXPECT_EQ(Digest(scratch / "run"), Digest(scratch / "fresh12"));
+
+  EXPECT_NE(fly(more, 12, "run").out.find("arms added: rbs,mass_kg=1.5\n"), std::string::npos);
+  ASSERT_EQ(fly(more, 12, "fresh").status, 0);
+  const std::string whole = Digest(scratch / "fresh");
+  EXPECT_EQ(Digest(scratch / "run"), whole);
+  EXPECT_EQ(Ed3r("replay " + (scratch / "run").string() + " rbs,mass_kg=2.4/3").status, 0);
+
+  for (const char* shard : {"0/2", "1/2"}) {
+    const std::string dir = std::string("shard") + shard[0], option = std::string("--quiet --shard ") + shard;
+    ASSERT_EQ(fly(few, 6, dir, option).status, 0);
+    ASSERT_EQ(fly(more, 12, dir, option).status, 0);
+  }
+  ASSERT_EQ(Ed3r(fmt::format("merge {0}/merged {0}/shard0 {0}/shard1", scratch.Path().string())).status, 0);
+  EXPECT_EQ(Digest(scratch / "merged"), whole);
+
+  const CommandResult lowered = fly(more, 11, "run"),
+                      changed = fly(more, 12, "run", "--set robot.speed_mps=4");
+  EXPECT_EQ(lowered.status, 2);
+  EXPECT_NE(lowered.err.find("stage online has 12 missions per arm there and 11 here"), std::string::npos)
+      << lowered.err;
+  EXPECT_EQ(changed.status, 2);
+  EXPECT_NE(changed.err.find("arm rbs,mass_kg=1.5: robot.speed_mps is 5 there and 4 here"), std::string::npos)
+      << changed.err;
+  EXPECT_EQ(Digest(scratch / "run"), whole);
+}
+
 TEST(RunTest, BadInputWritesNothing) {
   const ScratchFolder scratch;
   const std::string out = (scratch / "run").string();

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "studies/metrics/metrics.h"
-#include "studies/paper/csv.h"
 #include "tests/claims/synthetic_run.h"
+#include "tests/studies/csv_rows.h"
 
 namespace ed3r {
 namespace {
@@ -48,13 +48,13 @@ TEST(ConvergenceTest, MissionsDoNotBuyOffTheLuckOfTraining) {
 
 TEST(ConvergenceTest, SmallArmsHaveNone) {
   EXPECT_TRUE(Convergence(std::vector<ArmData>{MakeArm({"rbs", 20}, {.missions = 49})}).empty());
-  EXPECT_EQ(ParseCsv(ConvergenceCsv({}), "c").size(), 1u);
+  EXPECT_EQ(CsvRows(ConvergenceCsv({})).size(), 1u);
 }
 
 TEST(ConvergenceTest, CsvHasEveryPoint) {
   const std::vector<ConvergencePoint> points =
       Convergence(std::vector<ArmData>{MakeArm({"rbs", 20}, {.missions = 60})});
-  const std::vector<CsvRow> rows = ParseCsv(ConvergenceCsv(points), "c");
+  const std::vector<CsvRow> rows = CsvRows(ConvergenceCsv(points));
   ASSERT_EQ(rows.size(), points.size() + 1);
   EXPECT_EQ(rows[1][1], "rbs");
   EXPECT_EQ(rows[1][3], "50");

@@ -5,9 +5,9 @@
 
 #include <sstream>
 
-#include "studies/paper/csv.h"
 #include "studies/tables/layout.h"
 #include "tests/claims/synthetic_run.h"
+#include "tests/studies/csv_rows.h"
 
 namespace ed3r {
 namespace {
@@ -101,12 +101,12 @@ TEST(VerdictTextTest, NothingForOtherStudies) {
   const ClaimStudy other = JudgeClaims(PaperClaims(), std::vector<ArmData>{MakeArm({"heavy", 20})});
   EXPECT_EQ(VerdictText(other), "");
   EXPECT_TRUE(VerdictJson(other).empty());
-  EXPECT_EQ(ParseCsv(VerdictCsv(other), "verdicts.csv").size(), 1u);
+  EXPECT_EQ(CsvRows(VerdictCsv(other)).size(), 1u);
 }
 
 TEST(VerdictDataTest, JsonAndCsvAgree) {
   const auto json = VerdictJson(Study());
-  const std::vector<CsvRow> rows = ParseCsv(VerdictCsv(Study()), "verdicts.csv");
+  const std::vector<CsvRow> rows = CsvRows(VerdictCsv(Study()));
   ASSERT_EQ(json.size(), PaperClaims().size());
   ASSERT_EQ(rows.size(), json.size() + 1);
   for (std::size_t i = 0; i < json.size(); ++i) {

@@ -29,6 +29,16 @@ TEST(CsvTableTest, CommentsAndBlankLinesStandAnywhereWhereTheyAreAllowed) {
   EXPECT_EQ(Refusal("a\n1\n\n2\n"), "t.csv:3:1: blank line inside the table");
 }
 
+TEST(CsvTableTest, TextComesBackAsItWasWritten) {
+  for (const std::string text : {"plain", "a,b", "say \"x\"", "\"\"", "\"", ",\",\"", ""}) {
+    const CsvTable table = CsvTable::Parse("t.csv", "a,b\n" + CsvField(text) + ",end\n");
+    EXPECT_EQ(table.Text(0, 0), text);
+    EXPECT_EQ(table.Text(0, 1), "end");
+  }
+  EXPECT_EQ(CsvField("plain"), "plain");
+  EXPECT_EQ(CsvField("two\nlines"), "\"two\nlines\"") << "for other readers: this one takes a line for a row";
+}
+
 TEST(CsvTableTest, VeryManyColumnsAreRefusedAtOnce) {
   std::string header;
   for (int i = 0; i < 2'000'000; ++i) header += "c" + std::to_string(i) + ",";

@@ -9,7 +9,7 @@
 
 #include "engine/config/parameters.h"
 #include "engine/core/sha256.h"
-#include "studies/paper/csv.h"
+#include "tests/studies/csv_rows.h"
 
 namespace ed3r {
 namespace {
@@ -74,8 +74,8 @@ struct Record {
 
 // One row is marked, of the wave that judges (JUDGING in scripts/calibrate.py), and it is the first of the worlds that are kept.
 TEST(CalibrationTest, TheFrozenPointIsOfTheRecord) {
-  const Record record{ParseCsv(Content(kFolder + "calibration/record.csv"), "record.csv")};
-  const Record matched{ParseCsv(Content(kFolder + "calibration/matched.csv"), "matched.csv")};
+  const Record record{CsvRows(Content(kFolder + "calibration/record.csv"))};
+  const Record matched{CsvRows(Content(kFolder + "calibration/matched.csv"))};
   const std::size_t wave = record.Column("wave"), frozen = record.Column("frozen");
   constexpr int kJudging = 10;
   int marked = 0;
@@ -93,7 +93,7 @@ TEST(CalibrationTest, TheFrozenPointIsOfTheRecord) {
 
 // Every world that is kept is one of the record's, with a world file of its own.
 TEST(CalibrationTest, TheMatchedWorldsAreThere) {
-  const Record matched{ParseCsv(Content(kFolder + "calibration/matched.csv"), "matched.csv")};
+  const Record matched{CsvRows(Content(kFolder + "calibration/matched.csv"))};
   ASSERT_GE(matched.rows.size(), 22u);  // the header, the default and twenty others
   for (std::size_t i = 1; i < matched.rows.size(); ++i) {
     const std::string& name = matched.rows[i].at(matched.Column("world"));

@@ -231,7 +231,7 @@ TEST(FigureDataTest, VariantsHaveAFigureOfTheirOwn) {
     for (std::size_t i = 0; i < arm.missions.size(); ++i)
       arm.missions[i].scenario = static_cast<std::int64_t>(i);
   for (MissionRecord& mission : both[1].missions) mission.total_j += 2000, mission.movement_j += 2000;
-  const VariantStudy study = CompareVariants(both);
+  const VariantStudy study = CompareVariants(both, Verdicts::kJudged);
   const std::vector<ArmData> arms = {Arm("rbs")};
   const std::vector<ArmMetrics> metrics = {ComputeMetrics(arms[0])};
   FigureInputs inputs;

@@ -56,7 +56,7 @@ TEST(LoadRunTest, GivesFlyingArmsInPlanOrder) {
 TEST(LoadRunTest, ReportOfAStoreIsTheReportOfItsMissions) {
   const TempDir temp;
   WriteRun(temp / "run");
-  const Report report = MakeReport(LoadRun(temp / "run"));
+  const Report report = MakeReport(LoadRun(temp / "run"), {});
   const ArmMetrics direct = ComputeMetrics(FiveMissions());
   for (const char* metric : {"total_energy_kj", "mscs_pct", "wer_pct", "or_pct", "lf_accuracy_pct"}) {
     EXPECT_EQ(report.arms[2][metric].value, direct[metric].value) << metric;

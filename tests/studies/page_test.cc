@@ -109,7 +109,7 @@ TEST(PageSlicesTest, TheDataStaySmallForManyMissions) {
 }
 
 std::vector<std::string> Answer(std::vector<ArmData> arms, std::vector<bool> warmups) {
-  return AnswerSentences(MakeReport({.name = "x", .arms = std::move(arms)}), warmups);
+  return AnswerSentences(MakeReport({.name = "x", .arms = std::move(arms)}, {}), warmups);
 }
 
 TEST(PageAnswerTest, TellsTheStudiedArmBesideItsRival) {

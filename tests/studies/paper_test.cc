@@ -5,41 +5,9 @@
 #include "engine/core/check.h"
 #include "studies/metrics/definitions.h"
 #include "studies/paper/claims.h"
-#include "studies/paper/csv.h"
 
 namespace ed3r {
 namespace {
-
-std::string ErrorOf(std::string_view csv) {
-  try {
-    ParseCsv(csv, "a.csv");
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(CsvTest, ReadsPlainAndQuotedFields) {
-  const std::vector<CsvRow> rows = ParseCsv("a,b\r\n\"x,\"\"y\"\"\",\n,\"two\nlines\"", "a.csv");
-  ASSERT_EQ(rows.size(), 3u);
-  EXPECT_EQ(rows[0], (CsvRow{"a", "b"}));
-  EXPECT_EQ(rows[1], (CsvRow{"x,\"y\"", ""}));
-  EXPECT_EQ(rows[2], (CsvRow{"", "two\nlines"}));
-}
-
-TEST(CsvTest, ErrorsNameTheLine) {
-  EXPECT_EQ(ErrorOf("a,b\n\"x\ny\",1\n1\n"), "a.csv:4: 1 fields where the first row has 2");
-  EXPECT_EQ(ErrorOf("a\n\"x"), "a.csv:2: a quote that is not closed");
-  EXPECT_EQ(ErrorOf("a\n\"x\"y\n"), "a.csv:2: text after a closing quote");
-}
-
-TEST(CsvTest, FieldsAreQuotedWhereTheyMustBe) {
-  for (const std::string text : {"plain", "a,b", "say \"x\"", "two\nlines", ""}) {
-    const std::string row = CsvField(text) + ",end\n";
-    EXPECT_EQ(ParseCsv(row, "a.csv").front(), (CsvRow{text, "end"}));
-  }
-  EXPECT_EQ(CsvField("plain"), "plain");
-}
 
 TEST(ClaimsTest, AreAllThere) {
   const std::vector<Claim>& claims = PaperClaims();

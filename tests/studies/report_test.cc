@@ -33,30 +33,30 @@ class ReportFilesTest : public testing::Test {
 };
 
 TEST(ReportTest, TextHasItsParts) {
-  const std::string text = ReportText(MakeReport(OneArm()));
+  const std::string text = ReportText(MakeReport(OneArm(), {}));
   EXPECT_TRUE(text.starts_with("paper\n\nStage online\n"));
   EXPECT_NE(text.find("success (MSR)"), std::string::npos);
   EXPECT_NE(text.find("base station unseen"), std::string::npos);
 }
 
 TEST(ReportTest, RunWithoutMissionsSaysSo) {
-  EXPECT_EQ(ReportText(MakeReport({.name = "empty", .arms = {}})), "empty\n\nNo missions.\n");
+  EXPECT_EQ(ReportText(MakeReport({.name = "empty", .arms = {}}, {})), "empty\n\nNo missions.\n");
 }
 
 TEST(ReportTest, JsonHasArmsAndGeneralisation) {
-  const auto json = nlohmann::json::parse(ReportJson(MakeReport(OneArm())).dump());
+  const auto json = nlohmann::json::parse(ReportJson(MakeReport(OneArm(), {})).dump());
   EXPECT_EQ(json.at("name"), "paper");
   EXPECT_EQ(json.at("arms").at("ed3r-75").at("msr_pct").at("mean"), 60);
   EXPECT_EQ(json.at("generalisation").at("ed3r-75").at("known-site").at("missions"), 2);
 }
 
 TEST(ReportTest, IsTheSameEveryTime) {
-  EXPECT_EQ(ReportText(MakeReport(OneArm())), ReportText(MakeReport(OneArm())));
-  EXPECT_EQ(ReportJson(MakeReport(OneArm())).dump(), ReportJson(MakeReport(OneArm())).dump());
+  EXPECT_EQ(ReportText(MakeReport(OneArm(), {})), ReportText(MakeReport(OneArm(), {})));
+  EXPECT_EQ(ReportJson(MakeReport(OneArm(), {})).dump(), ReportJson(MakeReport(OneArm(), {})).dump());
 }
 
 TEST_F(ReportFilesTest, AreWrittenAndReplaced) {
-  const Report report = MakeReport(OneArm());
+  const Report report = MakeReport(OneArm(), {});
   for (int round = 0; round < 2; ++round) {
     WriteReport(report, (dir_ / "deep").string());
     EXPECT_EQ(Content(dir_ / "deep/report.txt"), ReportText(report));
@@ -75,9 +75,9 @@ TEST_F(ReportFilesTest, AreWrittenAndReplaced) {
 TEST_F(ReportFilesTest, UnwritablePlacesAreUserErrors) {
   fs::create_directories(dir_ / "report.txt");  // a folder in the file's place
   std::ofstream(dir_ / "report.txt" / "x") << "x";
-  EXPECT_THROW(WriteReport(MakeReport(OneArm()), dir_.string()), UserError);
+  EXPECT_THROW(WriteReport(MakeReport(OneArm(), {}), dir_.string()), UserError);
   std::ofstream(dir_ / "file") << "x";
-  EXPECT_THROW(WriteReport(MakeReport(OneArm()), (dir_ / "file" / "below").string()), UserError);
+  EXPECT_THROW(WriteReport(MakeReport(OneArm(), {}), (dir_ / "file" / "below").string()), UserError);
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <sstream>
 
-#include "studies/paper/csv.h"
 #include "studies/tables/data_files.h"
 #include "studies/tables/layout.h"
 #include "studies/tables/paper_cell.h"
 #include "studies/tables/result_table.h"
+#include "tests/studies/csv_rows.h"
 #include "tests/studies/five_missions.h"
 
 namespace ed3r {
@@ -174,7 +174,7 @@ TEST(JsonTest, EqualNamesOfTwoStagesAreToldApart) {
 
 TEST(CsvFileTest, HoldsEveryValueInFullPrecision) {
   const ArmMetrics arm = Named("online", "mass=1, speed=5");
-  const std::vector<CsvRow> rows = ParseCsv(ResultCsv(std::vector{arm}, PaperClaims()), "report.csv");
+  const std::vector<CsvRow> rows = CsvRows(ResultCsv(std::vector{arm}, PaperClaims()));
   ASSERT_EQ(rows.size(), 1 + 3 + MetricDefinitions().size());
   EXPECT_EQ(rows[0], (CsvRow{"stage", "arm", "metric", "value", "lo", "hi", "n", "paper"}));
   EXPECT_EQ(rows[1], (CsvRow{"online", "mass=1, speed=5", "missions", "5", "", "", "5", ""}));
@@ -184,14 +184,13 @@ TEST(CsvFileTest, HoldsEveryValueInFullPrecision) {
     EXPECT_EQ(std::stod(rows[4 + i][3]), arm.values[i].value);
     EXPECT_EQ(rows[4 + i][5], std::isnan(arm.values[i].hi) ? "" : fmt::format("{}", arm.values[i].hi));
   }
-  const std::vector<CsvRow> paper =
-      ParseCsv(ResultCsv(std::vector{Named("online", "rbs")}, PaperClaims()), "r");
+  const std::vector<CsvRow> paper = CsvRows(ResultCsv(std::vector{Named("online", "rbs")}, PaperClaims()));
   EXPECT_EQ(paper[4][7], "34.99");
 }
 
 TEST(CsvFileTest, GeneralisationHasFourPlaces) {
   const std::vector<Generalisation> arms = {ComputeGeneralisation(FiveMissions())};
-  const std::vector<CsvRow> rows = ParseCsv(GeneralisationCsv(arms), "generalisation.csv");
+  const std::vector<CsvRow> rows = CsvRows(GeneralisationCsv(arms));
   ASSERT_EQ(rows.size(), 1 + 4 * MetricDefinitions().size());
   EXPECT_EQ(rows[1][2], "known-site");
   EXPECT_EQ(rows[1][3], "total_energy_kj");

@@ -42,7 +42,7 @@ TEST(VariantsTest, ArmsFindTheirVariants) {
 }
 
 TEST(VariantsTest, DifferencesArePairedByScenario) {
-  const VariantStudy study = CompareVariants(Study());
+  const VariantStudy study = CompareVariants(Study(), Verdicts::kJudged);
   ASSERT_EQ(study.differences.size(), 3u);
   const VariantDifference& energy = study.differences[0];
   EXPECT_EQ(energy.metric, "total_energy_kj");
@@ -67,7 +67,7 @@ TEST(VariantsTest, OrdersThatChangeAreARowEach) {
     for (const ArmData& arm :
          {MakeArm({"ed3r-75", energy_kj}), MakeArm({"ecd2r", 25}), MakeArm({"rbs", 35, 0.2, 0, false})})
       arms.push_back(AsVariant({arm}, variant).front());
-  const VariantStudy study = CompareVariants(arms);
+  const VariantStudy study = CompareVariants(arms, Verdicts::kJudged);
   const std::string text = VariantText(study);
   EXPECT_NE(text.find("C140 total energy: ed3r-75 < ecd2r, rbs                            +  -\n"),
             std::string::npos)
@@ -87,7 +87,7 @@ TEST(VariantsTest, OrdersThatChangeAreARowEach) {
 TEST(VariantsTest, ScenariosThatOneDidNotFlyAreLeftOut) {
   std::vector<ArmData> arms = Study();
   arms[1].missions.resize(4);  // scenarios 9, 8, 7, 6
-  const VariantStudy study = CompareVariants(arms);
+  const VariantStudy study = CompareVariants(arms, Verdicts::kJudged);
   EXPECT_EQ(study.differences[0].pairs, 4);
   EXPECT_NEAR(study.differences[0].base, 17.5, 1e-12);
 }
@@ -98,7 +98,8 @@ TEST(VariantsTest, NetworksThatDisagreeWidenTheInterval) {
     base.missions.push_back(MissionOf(i, 20, Outcome::kSuccess, i % 2));
     other.missions.push_back(MissionOf(i, i % 2 == 0 ? 21 : 25, Outcome::kSuccess, i % 2));
   }
-  const VariantDifference energy = CompareVariants(std::vector{base, other}).differences[0];
+  const VariantDifference energy =
+      CompareVariants(std::vector{base, other}, Verdicts::kJudged).differences[0];
   EXPECT_NEAR(energy.difference, 3.0, 1e-12);
   EXPECT_LT(energy.lo, 0.0) << "two networks that differ by 4 kJ say nothing of the next one";
 }
@@ -107,7 +108,7 @@ TEST(VariantsTest, RunsFlownApartAreComparedAsVariants) {
   std::vector<ArmData> arms = AsVariant({{"online", "rbs", {MissionOf(3, 20, Outcome::kSuccess)}}}, "one");
   for (ArmData& arm : AsVariant({{"online", "rbs", {MissionOf(3, 26, Outcome::kSuccess)}}}, "two"))
     arms.push_back(arm);
-  const VariantStudy study = CompareVariants(arms);
+  const VariantStudy study = CompareVariants(arms, Verdicts::kJudged);
   EXPECT_EQ(study.variants, (std::vector<std::string>{"one", "two"}));
   EXPECT_NEAR(study.differences.at(0).difference, 6.0, 1e-12);
 }
@@ -131,8 +132,8 @@ ArmData FlownBy(const std::string& name, int networks, double energy_kj) {
 
 TEST(VariantsTest, ASingleNetworkMakesNothingCertain) {
   for (const auto& [base, other] : {std::pair{1, 1}, std::pair{1, 3}, std::pair{3, 1}}) {
-    const VariantStudy study =
-        CompareVariants(std::vector{FlownBy("ed3r-75@a", base, 20), FlownBy("ed3r-75@b", other, 60)});
+    const VariantStudy study = CompareVariants(
+        std::vector{FlownBy("ed3r-75@a", base, 20), FlownBy("ed3r-75@b", other, 60)}, Verdicts::kJudged);
     const VariantDifference& energy = study.differences[0];
     EXPECT_GT(energy.lo, 0.0);
     EXPECT_FALSE(energy.Certain());
@@ -145,7 +146,7 @@ TEST(VariantsTest, ASingleNetworkMakesNothingCertain) {
 TEST(VariantsTest, DifferentNumbersOfNetworksAreComparedByWelch) {
   const ArmData two = FlownBy("ed3r-75@a", 2, 20), five = FlownBy("ed3r-75@b", 5, 20);
   const auto width = [](const ArmData& a, const ArmData& b) {
-    const VariantDifference energy = CompareVariants(std::vector{a, b}).differences[0];
+    const VariantDifference energy = CompareVariants(std::vector{a, b}, Verdicts::kJudged).differences[0];
     return energy.hi - energy.lo;
   };
   ArmData first = five, second = two;
@@ -157,7 +158,7 @@ TEST(VariantsTest, DifferentNumbersOfNetworksAreComparedByWelch) {
 }
 
 TEST(VariantsTest, AStudyWithoutVariantsHasNone) {
-  const VariantStudy study = CompareVariants(std::vector{ArmData{"online", "rbs", {}}});
+  const VariantStudy study = CompareVariants(std::vector{ArmData{"online", "rbs", {}}}, Verdicts::kJudged);
   EXPECT_TRUE(study.variants.empty());
   EXPECT_EQ(VariantText(study), "");
 }

@@ -49,6 +49,15 @@ test("opens without a fault and without asking for anything", async () => {
   await page.close();
 });
 
+test("its head names what was not as in the paper", async () => {
+  const page = await open();
+  const notes = await page.$$eval("#headline .note", (list) => list.map((note) => note.textContent));
+  assert.equal(report.paper.claims_judged, true);
+  assert.equal(notes.length, 1);
+  assert.match(notes[0], /^In other numbers than the paper: missions of warmup 12 for 2040; /);
+  await page.close();
+});
+
 test("its numbers are those of report.json", async () => {
   const page = await open();
   const shown = await page.$$eval("#headline-table td[data-metric]", (cells) =>

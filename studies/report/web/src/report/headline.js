@@ -15,6 +15,7 @@ export function headline(model, store) {
     el("p", { class: "kicker" }, `${data.name} · ${told(data)}`),
     el("h1", {}, data.question || data.name),
     el("p", { class: "answer" }, data.answer.length ? data.answer.join(" ") : "No missions yet."),
+    data.departures.map((note) => el("p", { class: "note" }, note)),
   );
   const table = el("div", {
     class: "wide",
