@@ -8,10 +8,13 @@ Read from a report of sweeps/matched.yaml (metrics.csv). Written beside it:
 """
 
 import csv
+import json
+import subprocess
 
 import numpy as np
 from scipy.stats import fisher_exact, norm, rankdata
 
+from calibration.flights import PROGRAM, ROOT
 from calibration.space import SPACE
 
 ARM = "ed3r-75"
@@ -42,6 +45,18 @@ def read_metrics(path):
 def read_points(path):
     with open(path, newline="") as file:
         return {row["world"]: row for row in csv.DictReader(file)}
+
+
+def worlds_that_flew_otherwise(report):
+    """Worlds of the report's run that are not those of the same name in sweeps/worlds: their points are not in matched.csv."""
+    inputs = json.loads((report / "manifest.json").read_text())["inputs"]
+    others = []
+    for name, fingerprint in inputs.items():
+        file = ROOT / "sweeps" / name
+        told = subprocess.run([PROGRAM, "world", file, "--json"], capture_output=True, text=True, check=False) if file.exists() else None
+        if told is None or told.returncode != 0 or json.loads(told.stdout)["fingerprint"] != fingerprint:
+            others.append(name)
+    return others
 
 
 def effects_of(arms):
@@ -152,6 +167,9 @@ def predict(report, matched):
     worlds = {world: worlds[world] for world in points if world in worlds}
     if not worlds:
         raise SystemExit(f"{report / 'metrics.csv'}: has none of the worlds of {matched}; a report of sweeps/matched.yaml has them")
+    if others := worlds_that_flew_otherwise(report):
+        raise SystemExit(f"{report}: {len(others)} worlds that flew are not those of the same name in sweeps/worlds, the first {others[0]}; "
+                         f"fly sweeps/matched.yaml as it is now (scripts/reproduce matched)")
     left = {world for world in worlds if float(points[world]["implausibility"]) < NOT_RULED_OUT}
     write_worlds(report / "worlds.csv", worlds, points)
     text = "\n".join([*share_lines(worlds, left), "", *second_lines(worlds, points), "", *hangs_on_lines(worlds, points)]) + "\n"
