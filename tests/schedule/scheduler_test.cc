@@ -11,6 +11,7 @@
 
 #include "engine/core/interrupt.h"
 #include "engine/mission/invariants.h"
+#include "engine/perception/vision/frame_detector.h"
 #include "engine/schedule/todo.h"
 #include "tests/store/store_fixture.h"
 
@@ -141,6 +142,7 @@ TEST(SchedulerTest, AMissionThatThrowsIsAFailedOneAndTheSweepGoesOn) {
     MissionRecord record = TestRecord(id);
     if (id == RunId{0, 0, 3}) throw std::runtime_error("the battery caught fire");
     if (id == RunId{2, 0, 5}) throw UserError("no such model");
+    if (id == RunId{2, 0, 6}) throw DetectorError("mine.onnx: answers not a number");
     if (id == RunId{2, 1, 0}) throw 42;
     if (id == RunId{2, 1, 2}) throw std::bad_alloc();
     if (id == RunId{2, 1, 3}) throw BrokenInvariant(Invariant::kPositionInWorld, "timestep 3: z_m is -2");
@@ -150,30 +152,32 @@ TEST(SchedulerTest, AMissionThatThrowsIsAFailedOneAndTheSweepGoesOn) {
   {
     const auto store = OpenTest(temp / "run");
     const RunSummary summary = RunMissions(TodoOf(*store), fly, *store, {.threads = 2});
-    EXPECT_EQ(summary.stored, 94);
-    EXPECT_EQ(summary.failed, 6);
+    EXPECT_EQ(summary.stored, 93);
+    EXPECT_EQ(summary.failed, 7);
     EXPECT_EQ(summary.dropped, 0);
     EXPECT_FALSE(summary.interrupted);
   }
   const std::vector<FailedMission> failures = ResultReader(temp / "run").Failures();
-  ASSERT_EQ(failures.size(), 6u);
+  ASSERT_EQ(failures.size(), 7u);
   std::vector<std::string> kinds;
   for (const FailedMission& failure : failures) kinds.push_back(failure.kind);
-  EXPECT_EQ(kinds, (std::vector<std::string>{"exception", "bad-input", "exception", "broken-check",
-                                             "out-of-memory", "position-in-world"}));
+  EXPECT_EQ(kinds, (std::vector<std::string>{"exception", "bad-input", "detector-answer", "exception",
+                                             "broken-check", "out-of-memory", "position-in-world"}));
   EXPECT_EQ(failures[0].message, "the battery caught fire");
   EXPECT_EQ(failures[0].scenario, 3);
   EXPECT_EQ(failures[0].seed, 7u);
   EXPECT_EQ(failures[1].message, "no such model");
   EXPECT_EQ(failures[1].scenario, 5005);
-  EXPECT_EQ(failures[2].message, "an exception of unknown type");
-  EXPECT_TRUE(Contains(failures[3].message, "timestep 0 follows timestep 0"));
+  EXPECT_EQ(failures[2].message, "mine.onnx: answers not a number");
+  EXPECT_EQ(failures[3].message, "an exception of unknown type");
+  EXPECT_TRUE(Contains(failures[4].message, "timestep 0 follows timestep 0"));
   {
     const auto store = OpenTest(temp / "run");
-    EXPECT_EQ(TodoOf(*store),
-              (std::vector<RunId>{{0, 0, 3}, {2, 0, 5}, {2, 1, 0}, {2, 1, 1}, {2, 1, 2}, {2, 1, 3}}));
+    EXPECT_EQ(
+        TodoOf(*store),
+        (std::vector<RunId>{{0, 0, 3}, {2, 0, 5}, {2, 0, 6}, {2, 1, 0}, {2, 1, 1}, {2, 1, 2}, {2, 1, 3}}));
     EXPECT_EQ(store->Failed(), TodoOf(*store));
-    EXPECT_EQ(RunMissions(TodoOf(*store), FlyTest, *store, {.threads = 2}).stored, 6);
+    EXPECT_EQ(RunMissions(TodoOf(*store), FlyTest, *store, {.threads = 2}).stored, 7);
   }
   EXPECT_TRUE(ResultReader(temp / "run").Failures().empty());
   EXPECT_EQ(DigestOfDir(temp / "run"), WholeDigest());
