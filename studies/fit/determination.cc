@@ -105,16 +105,6 @@ std::optional<Fault> WorstOf(const EnergyModel& model, const std::vector<Flight>
   return worst;
 }
 
-// The estimate of the free parameters alone, to begin a fit from.
-Estimate Without(const Estimate& estimate, std::size_t parameter) {
-  Estimate rest = estimate;
-  const auto at = static_cast<std::ptrdiff_t>(parameter);
-  rest.values.erase(rest.values.begin() + at);
-  rest.at_lower.clear();
-  rest.at_upper.clear();
-  return rest;
-}
-
 }  // namespace
 
 Determination Determine(const EnergyModel& model, const std::vector<double>& defaults,
@@ -137,7 +127,7 @@ Determination Determine(const EnergyModel& model, const std::vector<double>& def
   for (;;) {
     const HeldModel rest(model, held, defaults);
     if (free.size() < size) {
-      now = EstimateParameters(rest, rows, now);
+      now = EstimateParameters(rest, rows);  // from all starts: the held values may lie far from the solution
       sure = EstimateUncertainty(rest, flights, now);
     }
     const std::optional<Fault> fault = WorstOf(rest, flights, now, sure);
@@ -150,7 +140,6 @@ Determination Determine(const EnergyModel& model, const std::vector<double>& def
     }
     held[parameter] = true;
     free.erase(free.begin() + static_cast<std::ptrdiff_t>(fault->parameter));
-    now = Without(now, fault->parameter);
   }
   for (std::size_t k = 0; k < free.size(); ++k) {
     result.values[free[k]] = now.values[k];

@@ -3,6 +3,7 @@
 #include <ceres/covariance.h>
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
+#include <glog/logging.h>
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -14,6 +15,18 @@ namespace ed3r {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// Ceres tells a singular matrix to the terminal as well as to us.
+class QuietCeres {
+ public:
+  QuietCeres() : before_(FLAGS_minloglevel) { FLAGS_minloglevel = google::GLOG_FATAL; }
+  ~QuietCeres() { FLAGS_minloglevel = before_; }
+  QuietCeres(const QuietCeres&) = delete;
+  QuietCeres& operator=(const QuietCeres&) = delete;
+
+ private:
+  int before_;
+};
 
 // (J'J)^-1 of the scaled residuals without loss, bound parameters held. Zero rows for those. False when
 // singular.
@@ -33,6 +46,7 @@ bool InverseNormalMatrix(const EnergyModel& model, const std::vector<Flight>& fl
   options.algorithm_type = ceres::SPARSE_QR;
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.num_threads = 1;
+  const QuietCeres quiet;
   ceres::Covariance covariance(options);
   const std::vector<std::pair<const double*, const double*>> blocks = {{values.data(), values.data()}};
   if (!covariance.Compute(blocks, &problem)) return false;

@@ -94,7 +94,7 @@ class UnitCheck {
     CheckSpeed("ground_speed_mps", kFastMps);
     CheckSize("climb_mps", kFastClimbMps, "m/s", {{"cm/s", 0.01}, {"ft/min", 0.00508}});
     CheckSize("voltage_v", 150.0, "V", {{"mV", 1e-3}});
-    CheckSize("current_a", 1000.0, "A", {{"mA", 1e-3}});
+    CheckSize("current_a", 1000.0, "A", {{"hundredths of an ampere", 0.01}, {"mA", 1e-3}});
     CheckSize("mass_kg", 50.0, "kg", {{"g", 1e-3}});
     CheckSize("payload_kg", 3.0 * format_.robot.mass_kg,
               fmt::format("kg on an airframe of {:g} kg", format_.robot.mass_kg), {{"g", 1e-3}});

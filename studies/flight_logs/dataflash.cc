@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <charconv>
+#include <iterator>
 
 #include "engine/core/check.h"
 #include "engine/core/message.h"
@@ -59,6 +60,15 @@ std::string TextAt(std::string_view bytes, std::size_t at, std::size_t length) {
 
 bool IsPlain(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 127; });
+}
+
+// A float as the shortest decimal that means it, which is what any export of the log prints: 0.4, not 0.40000000596.
+double ShortestDecimal(float number) {
+  char text[32];
+  const auto [end, problem] = std::to_chars(std::begin(text), std::end(text), number);
+  double value = number;
+  if (problem == std::errc()) std::from_chars(text, end, value);
+  return value;
 }
 
 // Flash that was never written, at the end of a log.
@@ -163,7 +173,7 @@ std::optional<double> DataFlashLog::Number(const Message& message, std::string_v
     case 'Q':
       return load(std::uint64_t{});
     case 'f':
-      return load(float{});
+      return ShortestDecimal(LoadLittleEndian<float>(bytes_, at));
     case 'd':
       return load(double{});
     case 'c':

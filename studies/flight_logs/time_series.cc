@@ -5,6 +5,11 @@
 #include <limits>
 
 namespace ed3r {
+namespace {
+
+constexpr double kStampS = 1e-6;  // stamps are whole microseconds; closer is the same
+
+}  // namespace
 
 void TimeSeries::Add(double time_s, double value) {
   if (!std::isfinite(time_s) || (!times_s_.empty() && time_s <= times_s_.back())) return;
@@ -15,7 +20,8 @@ void TimeSeries::Add(double time_s, double value) {
 double TimeSeries::Nearest(double time_s) const {
   const auto after = std::lower_bound(times_s_.begin(), times_s_.end(), time_s);
   auto best = after;
-  if (after == times_s_.end() || (after != times_s_.begin() && time_s - *(after - 1) < *after - time_s))
+  if (after == times_s_.end() ||
+      (after != times_s_.begin() && time_s - *(after - 1) <= *after - time_s + kStampS))
     best = after == times_s_.begin() ? after : after - 1;
   if (best == times_s_.end() || std::abs(*best - time_s) > kMaxJoinS)
     return std::numeric_limits<double>::quiet_NaN();

