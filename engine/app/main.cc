@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -80,6 +81,8 @@ int RunCommand(int argc, char** argv, CLI::App& program) {
   }
 }
 
+int output_error = 0;  // why a print failed that was more than the buffer holds
+
 int Main(int argc, char** argv) {
   CLI::App program(
       "ed3r: flies declared studies of energy-aware wildfire detection and reports them with intervals");
@@ -98,7 +101,9 @@ int Main(int argc, char** argv) {
   } catch (const std::system_error& error) {
     if (std::ferror(stdout) == 0)
       fmt::print(stderr, "{}\n", OneLine(fmt::format("ed3r: failed inside: {}", error.what())));
-    return kFailedInside;  // what could not be printed is told at the end
+    else
+      output_error = error.code().value();  // told at the end
+    return kFailedInside;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "ed3r: out of memory\n");
     return kFailedInside;
@@ -113,20 +118,32 @@ int Main(int argc, char** argv) {
 
 // What was printed must have arrived, or the status says so.
 int Delivered(int status) {
-  std::cout.flush();
   errno = 0;
+  std::cout.flush();
   const bool flushed = std::fflush(stdout) == 0;
-  const int error = errno;
+  const int error = output_error != 0 ? output_error : errno;
   if (flushed && std::ferror(stdout) == 0 && std::cout) return status;
   fmt::print(stderr, "ed3r: standard output cannot be written{}{}\n", error == 0 ? "" : ": ",
              error == 0 ? "" : std::strerror(error));
   return status == kDone ? kFailedInside : status;
 }
 
+// A descriptor that was closed by whoever started us would be that of the next file that is opened, a results file
+// perhaps, and what is printed would land in it. In its place stands one that cannot be written.
+void FillStandardDescriptors() {
+  for (int descriptor = open("/dev/null", O_RDONLY); descriptor >= 0;
+       descriptor = open("/dev/null", O_RDONLY))
+    if (descriptor > STDERR_FILENO) {
+      close(descriptor);
+      return;
+    }
+}
+
 }  // namespace
 }  // namespace ed3r
 
 int main(int argc, char** argv) {
+  ed3r::FillStandardDescriptors();
   // A file that grows beyond its limit is an error of the write, told like any other.
   std::signal(SIGXFSZ, SIG_IGN);
   ed3r::EndOnInterrupt({.interrupted = ed3r::kInterrupted, .requeue = ed3r::kRequeue});

@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <limits>
+#include <system_error>
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
@@ -46,7 +50,10 @@ void FailByExtendedCode(const std::string& file, int code, const std::string& re
     case SQLITE_IOERR_SHMLOCK:
     case SQLITE_IOERR_SHMMAP:
     case SQLITE_PROTOCOL:
-      throw SharedMemoryError(fmt::format("{}: {} (SQLite code {})", file, reason, code));
+      throw SharedMemoryError(fmt::format(
+          "{0}: {0}-shm, the memory that its readers and writers share, cannot be used here ({1}, SQLite "
+          "code {2}); copy the folder to a local disk, or say ED3R_STORE=shared",
+          file, reason, code));
     case SQLITE_READONLY_ROLLBACK:
       throw UnfinishedCommitError(
           fmt::format("{}: a writer was killed in the midst of a commit, or is at one; the run's own command "
@@ -55,6 +62,34 @@ void FailByExtendedCode(const std::string& file, int code, const std::string& re
     default:
       return;
   }
+}
+
+std::string Reason(int error) { return std::error_code(error, std::generic_category()).message(); }
+
+// What may have stopped a write: SQLite forgets the system's reason.
+std::string SizeLimit(int extended_code) {
+  rlimit limit{};
+  if (extended_code != SQLITE_IOERR_WRITE || getrlimit(RLIMIT_FSIZE, &limit) != 0 ||
+      limit.rlim_cur == RLIM_INFINITY)
+    return "";
+  return fmt::format("; files may have {} bytes here, by ulimit -f", limit.rlim_cur);
+}
+
+// Why SQLite could not open a file: it tells of no cause.
+std::string WhyNotOpened(const std::string& file, const std::string& reason) {
+  if (access(file.c_str(), R_OK) != 0) return fmt::format("{}: cannot be read: {}", file, Reason(errno));
+  std::error_code error;
+  const auto unmerged_bytes = std::filesystem::file_size(file + "-wal", error);
+  const std::string memory = file + "-shm";
+  const bool there = std::filesystem::exists(memory);
+  const std::string needed = there ? memory : std::filesystem::absolute(file).parent_path().string();
+  if (!error && unmerged_bytes > 0 && access(needed.c_str(), R_OK | W_OK) != 0)
+    return fmt::format(
+        "{0}: its last commits lie in {0}-wal, and to read them {0}-shm cannot be {1}: {2}; read it as a "
+        "user who may write there, or copy the folder",
+        file, there ? "opened" : "made", Reason(errno));
+  if (access(file.c_str(), W_OK) != 0) return fmt::format("{}: cannot be written: {}", file, Reason(errno));
+  return fmt::format("{}: cannot be opened for this ({})", file, reason);
 }
 
 }  // namespace
@@ -110,11 +145,11 @@ void Connection::Fail() const {
     case SQLITE_READONLY:
     case SQLITE_PERM:
     case SQLITE_AUTH:
-      throw UserError(fmt::format("{}: cannot be opened for this ({})", file_, reason));
+      throw UserError(WhyNotOpened(file_, reason));
     case SQLITE_IOERR:  // the extended code tells reading from writing and syncing
-      throw StoreError(
-          fmt::format("{}: {} (SQLite code {}); what is stored is kept, and the same command continues",
-                      file_, reason, sqlite3_extended_errcode(database_.get())));
+      throw StoreError(fmt::format(
+          "{}: {} (SQLite code {}{}); what is stored is kept, and the same command continues", file_, reason,
+          sqlite3_extended_errcode(database_.get()), SizeLimit(sqlite3_extended_errcode(database_.get()))));
     case SQLITE_FULL:
       throw StoreError(fmt::format(
           "{}: {}; what is stored is kept: make room, and the same command continues", file_, reason));

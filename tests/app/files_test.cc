@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 
@@ -107,9 +108,56 @@ TEST_F(StoredFilesTest, OutputThatDoesNotArriveIsAnError) {
     const int status = std::system(line.c_str());
     EXPECT_EQ(WEXITSTATUS(status), 1) << command;
     const std::string said = ReadAll(scratch_ / "err");
-    EXPECT_TRUE(said.starts_with("ed3r: standard output cannot be written")) << said;
-    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+    EXPECT_EQ(said, "ed3r: standard output cannot be written: No space left on device\n") << command;
   }
+}
+
+// What was printed went into the file that was opened next, and the table was lost with it.
+TEST_F(StoredFilesTest, AClosedOutputIsAnError) {
+  const fs::path out = scratch_ / "out";
+  for (const std::string& command : {"digest " + (*flown_ / "run").string(),
+                                     "export --csv " + (*flown_ / "run").string() + " --out " + out.string(),
+                                     std::string("params"), std::string("--version")}) {
+    const std::string line = fmt::format("{} {} >&- 2>{}", ED3R_BINARY, command, (scratch_ / "err").string());
+    EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1) << command;
+    EXPECT_EQ(ReadAll(scratch_ / "err"), "ed3r: standard output cannot be written: Bad file descriptor\n")
+        << command;
+  }
+  EXPECT_TRUE(ReadAll(out / "missions.csv").starts_with("stage,arm,mission,"));
+}
+
+// Beyond the limit of a file's size, or of the disk.
+TEST_F(StoredFilesTest, AFileThatMayNotGrowIsAnErrorOfOneLine) {
+  const std::string sweep = ED3R_SOURCE_DIR "/sweeps/rbs.yaml --missions 3 --quiet --out ";
+  CommandResult result = Ed3r("run " + sweep + (scratch_ / "small").string(), "ulimit -f 80;");
+  ExpectOneLine(result, 1,
+                "(SQLite code 778; files may have 40960 bytes here, by ulimit -f); what is stored is kept");
+  result = Ed3r("export --csv " + (*flown_ / "run").string() + " --out " + (scratch_ / "out").string(),
+                "ulimit -f 1;");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("cannot be written: File too large"), std::string::npos) << result.err;
+}
+
+// Commits that a killed writer left beside the store can be read only with a -shm file.
+TEST_F(StoredFilesTest, AStoreThatThisUserMayNotReadIsNamedWithTheReason) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can become a user who may not";
+  const std::string store = (scratch_ / "run" / "results.sqlite").string();
+  const std::string nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups ";
+  if (std::system((nobody + ED3R_BINARY " --version >/dev/null 2>&1").c_str()) != 0)
+    GTEST_SKIP() << "no other user, or the program lies where one may not go";
+  fs::permissions(scratch_.Path(), fs::perms::others_read | fs::perms::others_exec, fs::perm_options::add);
+  Altered("PRAGMA journal_mode = WAL");
+  fs::copy_file(store, store + "-wal");  // no valid one, but not empty
+  ExpectOneLine(
+      Ed3r("digest " + (scratch_ / "run").string(), nobody), 2,
+      "results.sqlite-shm cannot be made: Permission denied; read it as a user who may write there, or copy");
+  std::ofstream(store + "-shm") << "x";
+  fs::permissions(store + "-shm", fs::perms::none);
+  ExpectOneLine(Ed3r("digest " + (scratch_ / "run").string(), nobody), 2,
+                "results.sqlite-shm cannot be opened: Permission denied");
+  fs::permissions(store, fs::perms::none);
+  ExpectOneLine(Ed3r("digest " + (scratch_ / "run").string(), nobody), 2,
+                "results.sqlite: cannot be read: Permission denied");
 }
 
 TEST(FilesTest, AnEmptyPathIsRefused) {

@@ -293,6 +293,16 @@ TEST_F(TextGridTest, ItsPrjTellsTheUnits) {
   EXPECT_NE(Message(kGrid).find("in degrees"), std::string::npos) << Message(kGrid);
 }
 
+// Two systems in a row, as ArcGIS writes them.
+TEST_F(TextGridTest, ItsPrjTellsTheUnitOfHeights) {
+  WritePrj("EPSG:2263");
+  std::ofstream(folder.Path("g.prj"), std::ios::app)
+      << ",VERTCS[\"NAVD_1988_Foot_US\",VDATUM[\"North_American_Vertical_Datum_1988\"],PARAMETER[\"Vertical_"
+         "Shift\",0.0],"
+         "PARAMETER[\"Direction\",1.0],UNIT[\"Foot_US\",0.3048006096012192]]";
+  ExpectSlope(*Load(kGrid), 30.0 * kSurveyFootM, kSurveyFootM);
+}
+
 TEST_F(TextGridTest, AnOldPrjTellsTheUnits) {
   folder.Write(
       "g.prj",
