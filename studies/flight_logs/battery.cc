@@ -61,7 +61,7 @@ ChosenBattery Summed(const std::vector<const Battery*>& batteries) {
 }  // namespace
 
 void CheckPowerMeasured(const std::string& path, const std::vector<Battery>& batteries) {
-  if (batteries.empty())
+  if (batteries.empty() || batteries.front().current_a.empty())
     throw UserError(path + ": power was not measured: the log has no battery voltage and current");
   for (const Battery& battery : batteries)
     if (Measured(battery)) return;

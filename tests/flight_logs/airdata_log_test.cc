@@ -50,6 +50,12 @@ TEST(AirDataLogTest, LeavesOutTheGround) {
             "dji.csv: no flight: motors starting or less than 0.5 m above take-off in all 100 rows");
 }
 
+TEST(AirDataLogTest, RefusesAHeaderWithoutRows) {
+  const std::string text = Export("feet", "mph");
+  EXPECT_EQ(Complaint([&] { ParseLog("dji.csv", text.substr(0, text.find('\n')), {}); }),
+            "dji.csv: power was not measured: the log has no battery voltage and current");
+}
+
 TEST(AirDataLogTest, CountsBadRowsWhereAsked) {
   std::string text = Export("feet", "mph");
   text.replace(text.find("\n3000,") + 1, 4, "none");
