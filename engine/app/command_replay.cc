@@ -52,17 +52,20 @@ std::string CellOf(std::string_view column, std::int64_t value) {
 }
 
 void WriteSteps(const MissionRecord& record, const std::filesystem::path& path) {
-  std::string file, separator;
+  std::string file;
+  char separator = '\0';
   const TimestepRecord columns;
   TimestepRecord::Describe(columns, [&](std::string_view name, const auto&) {
-    file.append(separator).append(name);
-    separator = ",";
+    if (separator != '\0') file += separator;
+    file += name;
+    separator = ',';
   });
   for (const TimestepRecord& step : record.steps) {
-    separator = "\n";
+    separator = '\n';
     TimestepRecord::Describe(step, [&](std::string_view name, const auto& value) {
-      file.append(separator).append(CellOf(name, value));
-      separator = ",";
+      file += separator;
+      file += CellOf(name, value);
+      separator = ',';
     });
   }
   WriteFile(path, file + "\n");
