@@ -86,7 +86,7 @@ std::vector<ResultColumn> RunReader::Timesteps(const std::string& arm) {
   return table;
 }
 
-std::string RunReader::ReportText() const {
+std::string RunReader::ReportText() {
   return ReportJson(MakeReport(LoadRun(reader_.dir()), ReadDepartures(reader_))).dump();
 }
 

@@ -36,7 +36,7 @@ class RunReader {
   std::vector<ResultColumn> Missions(const std::string& arm);
   std::vector<ResultColumn> Timesteps(const std::string& arm);
 
-  std::string ReportText() const;  // the JSON of 'ed3r report --json'
+  std::string ReportText();  // the JSON of 'ed3r report --json'
   std::string Digest();
 
  private:
