@@ -87,7 +87,7 @@ def subsystems_of(path):
 def sources(root):
     """(subsystem, path relative to root) of every source that counts, by path."""
     paths = [p.relative_to(root).as_posix() for folder in FOLDERS for p in (root / folder).rglob("*")
-             if p.suffix in SUFFIXES]
+             if p.suffix in SUFFIXES and "node_modules" not in p.parts]
     return [(subsystem, path) for path in sorted(paths) for subsystem in subsystems_of(path)]
 
 

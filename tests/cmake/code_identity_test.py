@@ -54,7 +54,7 @@ class IdentitiesTest(unittest.TestCase):
         self.folder = tempfile.TemporaryDirectory()
         self.root = pathlib.Path(self.folder.name)
         for folder in code_identity.FOLDERS:
-            shutil.copytree(ROOT / folder, self.root / folder)
+            shutil.copytree(ROOT / folder, self.root / folder, ignore=shutil.ignore_patterns("node_modules"))
         self.before = code_identity.identities(self.root)
 
     def tearDown(self):

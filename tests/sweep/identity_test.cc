@@ -6,6 +6,7 @@
 #include <functional>
 #include <set>
 
+#include "engine/core/shipped.h"
 #include "tests/sweep/scratch.h"
 
 namespace ed3r {
@@ -138,11 +139,18 @@ TEST(IdentityTest, AbsoluteWorldsStayAbsolute) {
   EXPECT_EQ(LoadSweep(scratch.Write("deep/er/x.yaml", study)).CanonicalText(), text);
 }
 
-TEST(IdentityTest, DefaultWorldIsRelativeToTheSweepFile) {
+// The shipped one where none lies beside the sweep file; the study is the same.
+TEST(IdentityTest, DefaultWorldIsBesideTheSweepFileOrShipped) {
   const ScratchFolder scratch;
-  const SweepPlan plan = LoadSweep(scratch.Write("a/x.yaml", "name: x\nmissions: 1\n"));
-  EXPECT_EQ(plan.stages[0].arms[0].config.mission.world, scratch.Path() + "/a/worlds/paper.yaml");
-  EXPECT_NE(plan.CanonicalText().find("\nmission.world=worlds/paper.yaml\n"), std::string::npos);
+  const std::string study = scratch.Write("a/x.yaml", "name: x\nmissions: 1\n");
+  const SweepPlan elsewhere = LoadSweep(study);
+  EXPECT_EQ(elsewhere.stages[0].arms[0].config.mission.world,
+            (ShippedSweeps() / "worlds/paper.yaml").string());
+  EXPECT_NE(elsewhere.CanonicalText().find("\nmission.world=worlds/paper.yaml\n"), std::string::npos);
+  const std::string world = scratch.Write("a/worlds/paper.yaml", "w");
+  const SweepPlan beside = LoadSweep(study);
+  EXPECT_EQ(beside.stages[0].arms[0].config.mission.world, world);
+  EXPECT_EQ(beside.CanonicalText(), elsewhere.CanonicalText());
 }
 
 TEST(IdentityTest, DoesNotDependOnHowTheSameStudyIsWritten) {
