@@ -20,18 +20,29 @@ function(ed3r_library name)
   target_link_libraries(${name} PUBLIC ed3r_rules ${ARG_DEPS})
 endfunction()
 
-# ed3r_test(NAME SOURCES a_test.cc ... DEPS targets ...): a GoogleTest program, one CTest entry per folder of tests.
+# ed3r_test(NAME SOURCES a_test.cc ... DEPS targets ... [APART suites ...]): a GoogleTest program, one CTest entry per folder of
+# tests; each suite that stands APART is an entry of its own, NAME_SUITE, so that long ones run side by side.
 function(ed3r_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS;APART" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ed3r_rules ${ARG_DEPS} GTest::gtest_main)
   # A third of the whole build otherwise; what the tests call is built as everybody flies it.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_compile_definitions(${name} PRIVATE
     ED3R_SOURCE_DIR="${CMAKE_SOURCE_DIR}" ED3R_BINARY="${CMAKE_BINARY_DIR}/ed3r")
-  add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY "${CMAKE_BINARY_DIR}")
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 600)
   endif()
+  set(others "")
+  foreach(suite ${ARG_APART})
+    add_test(NAME ${name}_${suite} COMMAND ${name} "--gtest_filter=${suite}.*" WORKING_DIRECTORY "${CMAKE_BINARY_DIR}")
+    set_tests_properties(${name}_${suite} PROPERTIES TIMEOUT ${ARG_TIMEOUT})
+    string(APPEND others ":${suite}.*")
+  endforeach()
+  if(others)
+    string(SUBSTRING "${others}" 1 -1 others)
+    set(others "--gtest_filter=-${others}")
+  endif()
+  add_test(NAME ${name} COMMAND ${name} ${others} WORKING_DIRECTORY "${CMAKE_BINARY_DIR}")
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT})
 endfunction()
