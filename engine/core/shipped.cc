@@ -13,7 +13,7 @@ fs::path ShippedFolder(const char* variable, const std::string& name, const std:
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) {
-    const fs::path installed = program.parent_path().parent_path() / "share" / "ed3r" / name;
+    fs::path installed = program.parent_path().parent_path() / "share" / "ed3r" / name;
     if (fs::is_directory(installed, error)) return installed;
   }
   return source;
