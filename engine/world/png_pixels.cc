@@ -91,6 +91,7 @@ PngPixels DecodePng(std::string_view bytes, const std::string& name) {
   pixels.bgra.create(reader.Size(), CV_8UC4);
   ED3R_CHECK(reader.RowBytes() == pixels.bgra.step, "four bytes a pixel");
   std::vector<png_bytep> rows;
+  rows.reserve(static_cast<std::size_t>(pixels.bgra.rows));
   for (int y = 0; y < pixels.bgra.rows; ++y) rows.push_back(pixels.bgra.ptr(y));
   if (!reader.Rows(rows.data())) refuse();
   return pixels;

@@ -36,7 +36,8 @@ void CloseVirtualFileSystems() {
   for (char** prefix = prefixes; prefix != nullptr && *prefix != nullptr; ++prefix) {
     const std::string_view name(*prefix);
     if (name.starts_with("/vsi") && name != "/vsimem/" && name != "/vsisubfile/")
-      VSIFileManager::InstallHandler(*prefix, new NoFiles);  // GDAL keeps it to the end
+      // GDAL keeps it to the end.
+      VSIFileManager::InstallHandler(*prefix, new NoFiles);  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks)
   }
   CSLDestroy(prefixes);
 }
