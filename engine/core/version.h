@@ -4,7 +4,7 @@
 namespace ed3r {
 
 struct CodeVersion {
-  const char* release;  // e.g. 1.0.0, of CMakeLists.txt
+  const char* release;      // e.g. 1.0.0, of CMakeLists.txt
   const char* source_hash;  // of all four below
   // Of the sources that can decide a result, comments and layout apart, by subsystem: equal hashes give equal results.
   // cmake/code_identity.py says which source belongs where.

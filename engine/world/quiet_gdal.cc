@@ -36,8 +36,8 @@ void CloseVirtualFileSystems() {
   for (char** prefix = prefixes; prefix != nullptr && *prefix != nullptr; ++prefix) {
     const std::string_view name(*prefix);
     if (name.starts_with("/vsi") && name != "/vsimem/" && name != "/vsisubfile/")
-      // GDAL keeps it to the end.
-      VSIFileManager::InstallHandler(*prefix, new NoFiles);  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks)
+      // GDAL keeps it to the end. NOLINTNEXTLINE(clang-analyzer-cplusplus.NewDeleteLeaks)
+      VSIFileManager::InstallHandler(*prefix, new NoFiles);
   }
   CSLDestroy(prefixes);
 }
