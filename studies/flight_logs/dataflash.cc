@@ -153,41 +153,28 @@ std::optional<double> DataFlashLog::Number(const Message& message, std::string_v
   if (field == format.fields.end()) return std::nullopt;
   if (type != nullptr) *type = field->type;
   const std::size_t at = message.offset + field->offset;
-  const auto load = [&]<class T>(T) { return static_cast<double>(LoadLittleEndian<T>(bytes_, at)); };
+  // Letters of its own beside those of LoadNumber: hundredths, degrees of latitude and longitude, flight modes.
+  const auto scaled = [&](char code, double unit) -> std::optional<double> {
+    const std::optional<double> number = LoadNumber(code, bytes_, at);
+    return number ? std::optional(*number / unit) : std::nullopt;
+  };
   switch (field->type) {
-    case 'b':
-      return load(std::int8_t{});
-    case 'B':
-    case 'M':
-      return load(std::uint8_t{});
-    case 'h':
-      return load(std::int16_t{});
-    case 'H':
-      return load(std::uint16_t{});
-    case 'i':
-      return load(std::int32_t{});
-    case 'I':
-      return load(std::uint32_t{});
-    case 'q':
-      return load(std::int64_t{});
-    case 'Q':
-      return load(std::uint64_t{});
     case 'f':
       return ShortestDecimal(LoadLittleEndian<float>(bytes_, at));
-    case 'd':
-      return load(double{});
+    case 'M':
+      return LoadNumber('B', bytes_, at);
     case 'c':
-      return load(std::int16_t{}) / 100.0;
+      return scaled('h', 100.0);
     case 'C':
-      return load(std::uint16_t{}) / 100.0;
+      return scaled('H', 100.0);
     case 'e':
-      return load(std::int32_t{}) / 100.0;
+      return scaled('i', 100.0);
     case 'E':
-      return load(std::uint32_t{}) / 100.0;
+      return scaled('I', 100.0);
     case 'L':
-      return load(std::int32_t{}) / 1e7;
+      return scaled('i', 1e7);
     default:
-      return std::nullopt;
+      return LoadNumber(field->type, bytes_, at);
   }
 }
 

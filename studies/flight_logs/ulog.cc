@@ -197,35 +197,7 @@ std::optional<double> ULog::Number(const Sample& sample, std::string_view name) 
                                   [&](const Field& candidate) { return candidate.name == name; });
   if (field == fields.end()) return std::nullopt;
   const std::string_view content = bytes_.substr(sample.offset, sample.size);
-  const auto load = [&]<class T>(T) -> std::optional<double> {
-    if (field->offset + sizeof(T) > content.size()) return std::nullopt;
-    return static_cast<double>(LoadLittleEndian<T>(content, field->offset));
-  };
-  switch (field->type) {
-    case 'b':
-      return load(std::int8_t{});
-    case 'B':
-    case '?':
-      return load(std::uint8_t{});
-    case 'h':
-      return load(std::int16_t{});
-    case 'H':
-      return load(std::uint16_t{});
-    case 'i':
-      return load(std::int32_t{});
-    case 'I':
-      return load(std::uint32_t{});
-    case 'q':
-      return load(std::int64_t{});
-    case 'Q':
-      return load(std::uint64_t{});
-    case 'f':
-      return load(float{});
-    case 'd':
-      return load(double{});
-    default:
-      return std::nullopt;
-  }
+  return LoadNumber(field->type == '?' ? 'B' : field->type, content, field->offset);
 }
 
 std::optional<double> ULog::TimeS(const Sample& sample) const {
