@@ -8,6 +8,8 @@
             (15 minutes on two cores instead of three hours)
   predict   from a report of sweeps/matched.yaml (--report DIR): in how many worlds ED3R is better, what that hangs on, and the
             second calibration
+  fresh     RBS in a run of other seeds (--run DIR: of sweeps/rbs.yaml; --warmup DIR: of sweeps/default_world.yaml) beside the paper's
+            twelve quantities
 Without a STEP: waves and freeze. Each continues where it stopped; the same code gives the same record.
 
 The evidence (scripts/calibration/evidence.py) is about RBS and the warm-up alone: all that is said of ED3R, its ablations
@@ -33,7 +35,7 @@ WAVES = ((140, 112, 8, "wide"), (100, 168, 8, "wide"), (60, 336, 12, "wide"), (2
          (8, 2000, 60, "most equivalent"))
 JUDGING = (6, 10)  # of these waves worlds are kept, and of the last of them the default
 SEED = 20261128
-STEPS = ("waves", "freeze", "check", "predict")
+STEPS = ("waves", "freeze", "check", "predict", "fresh")
 CHECKED_POINTS = 3  # of each wave
 
 
@@ -90,9 +92,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--again", metavar="DIR", type=pathlib.Path,
                         help="search from nothing in DIR, which holds record.csv then; freezes nothing")
-    parser.add_argument("steps", nargs="*", metavar="STEP", help="waves, freeze, check or predict; default: waves and freeze")
+    parser.add_argument("steps", nargs="*", metavar="STEP", help="waves, freeze, check, predict or fresh; default: waves and freeze")
     parser.add_argument("--report", metavar="DIR", type=pathlib.Path, default=flights.ROOT / "results/matched",
                         help="of what predict reads; default: results/matched")
+    parser.add_argument("--run", metavar="DIR", type=pathlib.Path, default=flights.ROOT / "results/runs/rbs", help="of what fresh reads")
+    parser.add_argument("--warmup", metavar="DIR", type=pathlib.Path, default=flights.ROOT / "results/runs/default_world",
+                        help="of what fresh reads the warm-up")
     options = parser.parse_args()
     steps = options.steps or STEPS[:2]
     if unknown := [step for step in steps if step not in STEPS]:
@@ -106,6 +111,9 @@ def main():
     if "predict" in steps:
         from calibration import prediction
         print(prediction.predict(options.report, FOLDER / "matched.csv"), end="")
+    if "fresh" in steps:
+        from calibration import fresh
+        print(fresh.table(options.run, options.warmup), end="")
     if "check" in steps:
         from calibration import check
         faults = check.check(search, WAVES, SEED, CHECKED_POINTS)

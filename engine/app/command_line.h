@@ -1,5 +1,5 @@
-// The program's command line: commands with their options. A narrow face of CLI11, whose headers cost twenty seconds of
-// compiling in every file that reads them. What is wrong on a command line throws; main.cc turns it into one line.
+// The program's command line: commands with their options. A narrow face of CLI11, whose headers are slow to compile in
+// every file that reads them. What is wrong on a command line throws; main.cc turns it into one line.
 #pragma once
 
 #include <cstdint>

@@ -26,11 +26,7 @@ class ArduPilotReader {
   }
 
   DecodedLog Read() {
-    std::vector<Battery> batteries;
-    for (auto& [id, battery] : batteries_) batteries.push_back(battery);
-    CheckPowerMeasured(path_, batteries);
-    CheckAnyFlight(path_, batteries.front().voltage_v, armed_, landed_);
-    const ChosenBattery battery = ChooseBattery(path_, batteries, reading_);
+    const ChosenBattery battery = BatteryInFlight(path_, batteries_, armed_, landed_, reading_);
     const bool gps = !gps_speed_.empty();
     const TimeSeries &speed = gps ? gps_speed_ : speed_, &climb = gps ? gps_climb_ : climb_;
     const TimeSeries& altitude = altitude_.empty() ? baro_altitude_ : altitude_;

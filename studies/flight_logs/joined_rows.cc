@@ -68,6 +68,15 @@ void CheckAnyFlight(const std::string& path, const TimeSeries& clock, const Time
   if (air_s < kMinFlightS) FailOnGround(path, armed, air_s, clock.time_s(0), clock.time_s(clock.size() - 1));
 }
 
+ChosenBattery BatteryInFlight(const std::string& path, const std::map<int, Battery>& batteries,
+                              const TimeSeries& armed, const TimeSeries& landed, const LogReading& reading) {
+  std::vector<Battery> all;
+  for (const auto& [id, battery] : batteries) all.push_back(battery);
+  CheckPowerMeasured(path, all);
+  CheckAnyFlight(path, all.front().voltage_v, armed, landed);
+  return ChooseBattery(path, all, reading);
+}
+
 void CheckFlown(const DecodedLog& log) {
   const bool flown = log.on_ground.empty() ? !log.columns.front().values.empty()
                                            : std::find(log.on_ground.begin(), log.on_ground.end(), false) !=

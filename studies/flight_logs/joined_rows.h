@@ -1,6 +1,7 @@
 // Sources on a battery's clock, to the rows of a DecodedLog.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ DecodedLog JoinRows(const std::string& path, LogKind kind, const ChosenBattery& 
 // log lacks.
 void CheckAnyFlight(const std::string& path, const TimeSeries& clock, const TimeSeries& armed,
                     const TimeSeries& landed);
+
+// The battery that a fit takes of a log's, by their numbers. What is wrong is said in this order: no power measured
+// (CheckPowerMeasured), no flight (CheckAnyFlight), no such battery or no choice (ChooseBattery).
+ChosenBattery BatteryInFlight(const std::string& path, const std::map<int, Battery>& batteries,
+                              const TimeSeries& armed, const TimeSeries& landed, const LogReading& reading);
 
 // Refuses rows of which none is in the air.
 void CheckFlown(const DecodedLog& log);

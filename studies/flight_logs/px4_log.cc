@@ -24,11 +24,7 @@ class Px4Reader {
   }
 
   DecodedLog Read() {
-    std::vector<Battery> batteries;
-    for (auto& [id, battery] : batteries_) batteries.push_back(battery);
-    CheckPowerMeasured(path_, batteries);
-    CheckAnyFlight(path_, batteries.front().voltage_v, armed_, landed_);
-    const ChosenBattery battery = ChooseBattery(path_, batteries, reading_);
+    const ChosenBattery battery = BatteryInFlight(path_, batteries_, armed_, landed_, reading_);
     if (speed_.empty())
       throw UserError(
           fmt::format("{}: no velocity: vehicle_local_position {}", path_,
