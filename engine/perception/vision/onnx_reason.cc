@@ -54,7 +54,8 @@ std::string Bare(std::string_view message) {
     while (!line.empty() && (line.front() == '>' || line.front() == ' ')) line.remove_prefix(1);
     line = line.substr(0, line.find(" in function '"));
     if (line.empty() || line.starts_with("in function '")) continue;
-    text += (text.empty() ? "" : " ") + std::string(line);
+    if (!text.empty()) text += ' ';
+    text += line;
   }
   return text;
 }
