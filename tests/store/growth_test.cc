@@ -18,11 +18,9 @@ Arm ArmOf(const std::string& name, const std::string& strategy, double mass_kg =
 
 // One stage, an axis of masses.
 SweepPlan Masses(const std::vector<double>& masses_kg, int missions) {
-  SweepPlan plan{.name = "masses",
-                 .question = "",
-                 .file = "",
-                 .seed = 7,
-                 .stages = {{.name = "online", .missions = missions}}};
+  SweepPlan plan{.name = "masses", .question = "", .file = "", .seed = 7, .stages = {Stage()}};
+  plan.stages[0].name = "online";
+  plan.stages[0].missions = missions;
   for (const double mass_kg : masses_kg)
     plan.stages[0].arms.push_back(ArmOf(fmt::format("rbs,mass_kg={}", mass_kg), "rbs", mass_kg));
   return plan;
@@ -31,15 +29,18 @@ SweepPlan Masses(const std::vector<double>& masses_kg, int missions) {
 // Warm-up, training, online.
 SweepPlan Learning(const std::vector<std::string>& warmups, int warmup_missions, int online_missions) {
   SweepPlan plan{.name = "learning", .question = "", .file = "", .seed = 7, .stages = {}};
-  plan.stages.push_back({.name = "warmup", .missions = warmup_missions});
+  plan.stages.push_back(
+      {.name = "warmup", .after = {}, .missions = warmup_missions, .precision = {}, .arms = {}});
   for (const std::string& name : warmups) plan.stages[0].arms.push_back(ArmOf(name, "random"));
   plan.stages.push_back({.name = "training",
                          .kind = StageKind::kTrain,
                          .after = {"warmup"},
+                         .precision = {},
                          .arms = {ArmOf("training", "rbs")}});
   plan.stages.push_back({.name = "online",
                          .after = {"training"},
                          .missions = online_missions,
+                         .precision = {},
                          .arms = {ArmOf("ed3r-75", "ed3r")}});
   return plan;
 }
