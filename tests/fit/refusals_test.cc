@@ -265,8 +265,9 @@ TEST_F(RefusalsTest, WhatTheDataDoNotDetermineIsNotWritten) {
   FlightRow row{.density_kgm3 = 1.225, .mass_kg = 2.0};
   for (const auto& model : MakeEnergyModels(report.log.format.robot, 9.8))
     for (const ModelReport& fitted : report.models)
-      if (fitted.name == model->name() && fitted.determination.Usable())
+      if (fitted.name == model->name() && fitted.determination.Usable()) {
         EXPECT_NEAR(model->PowerW(row, fitted.determination.values.data()), 300.0, 6.0) << fitted.name;
+      }
 }
 
 }  // namespace
