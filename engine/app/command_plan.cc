@@ -9,6 +9,7 @@
 #include "engine/app/expected_time.h"
 #include "engine/app/sweep_arguments.h"
 #include "engine/app/words.h"
+#include "engine/schedule/training_stage.h"
 
 namespace ed3r {
 namespace {
@@ -72,6 +73,7 @@ Command AddPlan(Program& program) {
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
             const SweepPlan plan = options->sweep.Load();
+            CheckTraining(plan);
             const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
             options->json ? PrintJson(plan, threads) : PrintText(plan, threads);
             return kDone;

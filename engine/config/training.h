@@ -14,6 +14,7 @@ struct TrainingConfig {
   double min_delta = 0.0;
   int seeds = 1;
   int seed = 1;
+  bool own_warmups = false;
   int split_seed = 1;
 
   template <class Self, class Visitor>
@@ -42,12 +43,20 @@ struct TrainingConfig {
           {.min = 1,
            .max = 1000,
            .source = "R18",
-           .meaning = "networks of each kind; they differ in initial weights, shuffles and dropout only"});
+           .meaning =
+               "networks of each kind; they differ in initial weights, shuffles and dropout, and in their "
+               "warm-up where training.own_warmups gives each its own"});
     visit("seed", self.seed,
           {.min = 0,
            .max = 1000000000,
            .source = "R18",
            .meaning = "training seed of the first network; the others follow on"});
+    visit(
+        "own_warmups", self.own_warmups,
+        {.source = "R18",
+         .meaning =
+             "every network of a kind learns from warm-up missions of its own: the warm-up in as many equal "
+             "parts as there are networks; otherwise each learns from all of it"});
     visit(
         "split_seed", self.split_seed,
         {.min = 0,

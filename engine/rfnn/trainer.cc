@@ -19,12 +19,13 @@
 namespace ed3r {
 namespace {
 
-// The parameters that shape one network, as provenance; the number of networks is not among them.
+// The parameters that shape one network, as provenance; neither the number of networks is among
+// them nor which missions they learn from, whose rows have a fingerprint of their own.
 struct ConfigTexts {
   Provenance texts;
   template <class T>
   void operator()(std::string_view name, const T& field, const FieldInfo& /*info*/) {
-    if (name != "seeds" && name != "seed")
+    if (name != "seeds" && name != "seed" && name != "own_warmups")
       texts.emplace_back(fmt::format("training.{}", name), fmt::format("{}", field));
   }
 };

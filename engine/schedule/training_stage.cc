@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 #include "engine/core/check.h"
 #include "engine/core/progress.h"
@@ -12,6 +11,7 @@
 #include "engine/mission/samples.h"
 #include "engine/rfnn/model_file.h"
 #include "engine/rfnn/train_all.h"
+#include "engine/schedule/warmup.h"
 #include "engine/store/reader.h"
 #include "engine/sweep/setting.h"
 
@@ -32,49 +32,11 @@ bool NeedsRobot(const Config& config) {
          config.networks.robot == FileNotNeeded("networks.robot");
 }
 
-// Stages that `stage` builds on, directly or not.
-std::set<std::string> Foundations(const SweepPlan& plan, const Stage& stage) {
-  std::set<std::string> found(stage.after.begin(), stage.after.end());
-  for (auto it = plan.stages.rbegin(); it != plan.stages.rend();
-       ++it)  // a stage stands behind those it builds on
-    if (found.contains(it->name)) found.insert(it->after.begin(), it->after.end());
-  return found;
-}
-
-// What an arm that asks networks learns from: `warmup` is (stage, arm), `trainings` the training stages behind it and
-// before the arm. (-1, -1) when there is none.
-struct WarmupChoice {
-  std::pair<int, int> warmup = {-1, -1};
-  std::set<std::string> trainings;
-};
-
-// A warm-up counts only where a training stage stands between it and the arm: before that it may not be flown yet.
-WarmupChoice ChooseWarmup(const SweepPlan& plan, const Stage& stage, const Arm& learner,
-                          std::string_view source) {
-  const std::set<std::string> foundations = Foundations(plan, stage);
-  for (std::size_t s = 0; s < plan.stages.size(); ++s) {
-    const Stage& flown = plan.stages[s];
-    if (flown.kind != StageKind::kFly || !foundations.contains(flown.name)) continue;
-    WarmupChoice choice;
-    for (const Stage& training : plan.stages)
-      if (training.kind == StageKind::kTrain && foundations.contains(training.name) &&
-          Foundations(plan, training).contains(flown.name))
-        choice.trainings.insert(training.name);
-    if (choice.trainings.empty()) continue;
-    for (std::size_t a = 0; a < flown.arms.size(); ++a) {
-      if (flown.arms[a].config.mission.strategy != source || flown.arms[a].variant != learner.variant)
-        continue;
-      choice.warmup = {static_cast<int>(s), static_cast<int>(a)};
-      return choice;
-    }
-  }
-  return {};
-}
-
 // All that the rows of a data set depend on.
-std::string RewardKey(std::pair<int, int> warmup, const AgentsConfig& agents) {
-  return fmt::format("{} {} {} {} {} {} {} {}", warmup.first, warmup.second, agents.eta_min, agents.lambda1,
-                     agents.lambda2, agents.mu1, agents.mu2, agents.energy_scale_j);
+std::string RewardKey(const WarmupPart& part, const AgentsConfig& agents) {
+  return fmt::format("{} {} {} {} {} {} {} {} {} {}", part.stage, part.arm, part.first, part.end,
+                     agents.eta_min, agents.lambda1, agents.lambda2, agents.mu1, agents.mu2,
+                     agents.energy_scale_j);
 }
 
 struct Samples {
@@ -82,15 +44,15 @@ struct Samples {
   DataSet robot{kRobotNetwork.inputs()};
 };
 
-Samples ReadSamples(ResultReader& reader, const SweepPlan& plan, std::pair<int, int> warmup,
+Samples ReadSamples(ResultReader& reader, const SweepPlan& plan, const WarmupPart& part,
                     const AgentsConfig& agents) {
-  const Config& flown = plan.stages[static_cast<std::size_t>(warmup.first)]
-                            .arms[static_cast<std::size_t>(warmup.second)]
-                            .config;
+  const Config& flown =
+      plan.stages[static_cast<std::size_t>(part.stage)].arms[static_cast<std::size_t>(part.arm)].config;
   Samples samples;
-  reader.ForEachMission(warmup.first, warmup.second, Steps::kLoad, [&](const StoredMission& mission) {
-    AppendSamples(mission.record, mission.id.mission, flown, agents, samples.rc, samples.robot);
-  });
+  reader.ForEachMission(
+      part.stage, part.arm, part.first, part.end, Steps::kLoad, [&](const StoredMission& mission) {
+        AppendSamples(mission.record, mission.id.mission, flown, agents, samples.rc, samples.robot);
+      });
   return samples;
 }
 
@@ -179,18 +141,9 @@ bool NeedsNetworks(const SweepPlan& plan) {
 }
 
 void CheckTraining(const SweepPlan& plan) {
-  for (const Stage& stage : plan.stages) {
-    for (const Arm& arm : stage.arms) {
-      const Strategy& strategy = FindStrategy(arm.config.mission.strategy);
-      if (stage.kind != StageKind::kFly || !NeedsTraining(arm.config)) continue;
-      if (ChooseWarmup(plan, stage, arm, strategy.networks).warmup.first < 0)
-        throw UserError(
-            fmt::format("{}: stage {}: arm {} asks networks, so the stage must come after a training stage "
-                        "('kind: train') that comes "
-                        "after a stage with strategy {}",
-                        plan.file, stage.name, arm.name, strategy.networks));
-    }
-  }
+  for (const Stage& stage : plan.stages)
+    for (const Arm& arm : stage.arms)
+      if (stage.kind == StageKind::kFly && NeedsTraining(arm.config)) CheckWarmup(plan, stage, arm);
 }
 
 // Collects what is to be trained, each network once, and hands the results out.
@@ -210,16 +163,16 @@ class TrainingStage {
     int stage, arm;
     std::vector<std::size_t> rc_jobs, robot_jobs;  // by training seed
   };
-  // The samples of one warm-up and reward, empty until something is trained on them.
+  // The samples of one part of a warm-up and one reward, empty until something is trained on them.
   struct Lesson {
-    std::pair<int, int> warmup;
+    WarmupPart part;
     AgentsConfig agents;
     Samples samples;
   };
   void Collect();
   std::size_t AddJob(const NetworkDesign& design, const DataSet& data, const Arm& arm,
                      std::string_view source, int seed);
-  const Samples& SamplesFor(std::pair<int, int> warmup, const AgentsConfig& agents);
+  const Samples& SamplesFor(const WarmupPart& part, const AgentsConfig& agents);
   void ReadLessons(const std::vector<TrainJob>& jobs);
   // Null where it was stopped.
   std::vector<std::shared_ptr<const Model>> Train(const std::vector<TrainJob>& jobs,
@@ -233,8 +186,8 @@ class TrainingStage {
   std::vector<ArmNeed> needs_;
 };
 
-const Samples& TrainingStage::SamplesFor(std::pair<int, int> warmup, const AgentsConfig& agents) {
-  return lessons_.try_emplace(RewardKey(warmup, agents), Lesson{warmup, agents, {}}).first->second.samples;
+const Samples& TrainingStage::SamplesFor(const WarmupPart& part, const AgentsConfig& agents) {
+  return lessons_.try_emplace(RewardKey(part, agents), Lesson{part, agents, {}}).first->second.samples;
 }
 
 void TrainingStage::ReadLessons(const std::vector<TrainJob>& jobs) {
@@ -244,7 +197,7 @@ void TrainingStage::ReadLessons(const std::vector<TrainJob>& jobs) {
     });
     if (!needed) continue;
     ResultReader reader(options_.run_dir);
-    lesson.samples = ReadSamples(reader, plan_, lesson.warmup, lesson.agents);
+    lesson.samples = ReadSamples(reader, plan_, lesson.part, lesson.agents);
   }
 }
 
@@ -272,17 +225,17 @@ void TrainingStage::Collect() {
     const Stage& stage = plan_.stages[s];
     for (std::size_t a = 0; a < stage.arms.size(); ++a) {
       const Arm& arm = stage.arms[a];
-      const Strategy& strategy = FindStrategy(arm.config.mission.strategy);
       if (stage.kind != StageKind::kFly || !NeedsTraining(arm.config)) continue;
-      const WarmupChoice choice = ChooseWarmup(plan_, stage, arm, strategy.networks);
+      const std::string_view source = FindStrategy(arm.config.mission.strategy).networks;
+      const WarmupChoice choice = ChooseWarmup(plan_, stage, arm);
       if (!options_.stage.empty() && !choice.trainings.contains(options_.stage)) continue;
-      const Samples& samples = SamplesFor(choice.warmup, arm.config.agents);
       ArmNeed need{static_cast<int>(s), static_cast<int>(a), {}, {}};
       for (int seed = 0; seed < arm.config.training.seeds; ++seed) {
-        if (NeedsRc(arm.config))
-          need.rc_jobs.push_back(AddJob(kRcNetwork, samples.rc, arm, strategy.networks, seed));
+        const Samples& samples =
+            SamplesFor(PartOf(plan_, choice, arm.config.training, seed), arm.config.agents);
+        if (NeedsRc(arm.config)) need.rc_jobs.push_back(AddJob(kRcNetwork, samples.rc, arm, source, seed));
         if (NeedsRobot(arm.config))
-          need.robot_jobs.push_back(AddJob(kRobotNetwork, samples.robot, arm, strategy.networks, seed));
+          need.robot_jobs.push_back(AddJob(kRobotNetwork, samples.robot, arm, source, seed));
       }
       needs_.push_back(std::move(need));
     }

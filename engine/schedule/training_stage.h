@@ -2,7 +2,8 @@
 //
 // Which networks there are follows from the arms: one RC network per warm-up strategy, reward and training seed, and
 // a robot network where the robot has a choice. Arms that need the same network share it; so do sweeps, through the
-// cache.
+// cache. Networks of one kind learn from the same missions, or each from its own (warmup.h): with its own, what differs
+// between them holds the luck of the warm-up beside that of training.
 #pragma once
 
 #include <atomic>
@@ -72,7 +73,7 @@ bool NeedsTraining(const Config& config);
 bool NeedsNetworks(const SweepPlan& plan);
 
 // Arms that ask for networks must stand in stages behind a training stage that is behind a warm-up with their source
-// strategy. Throws UserError that says what is missing; part of the checks before anything is written.
+// strategy, with missions for each network (CheckWarmup). Throws UserError that says what is missing; part of the checks before anything is written.
 void CheckTraining(const SweepPlan& plan);
 
 // Trains, or finds, the networks of a training stage: those of arms behind it whose warm-up is before it, so that nothing

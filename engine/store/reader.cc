@@ -106,6 +106,13 @@ void ResultReader::ForEachMission(int stage, int arm, Steps steps, const Mission
   Visit(fmt::format("WHERE missions.run = {}", layout_.RunIndex(stage, arm)), steps, visit);
 }
 
+void ResultReader::ForEachMission(int stage, int arm, int first, int end, Steps steps,
+                                  const MissionVisitor& visit) {
+  Visit(fmt::format("WHERE missions.run = {} AND missions.mission >= {} AND missions.mission < {}",
+                    layout_.RunIndex(stage, arm), first, end),
+        steps, visit);
+}
+
 void ResultReader::Visit(const std::string& where, Steps steps, const MissionVisitor& visit) {
   const Transaction moment(database_, Transaction::Kind::kRead);
   MissionCursor cursor(database_, layout_, where, steps);

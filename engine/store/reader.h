@@ -73,6 +73,8 @@ class ResultReader {
   using MissionVisitor = std::function<void(const StoredMission&)>;
   void ForEachMission(Steps steps, const MissionVisitor& visit);
   void ForEachMission(int stage, int arm, Steps steps, const MissionVisitor& visit);
+  // Missions first, first + 1, ..., end - 1 of the arm.
+  void ForEachMission(int stage, int arm, int first, int end, Steps steps, const MissionVisitor& visit);
 
   // Every timestep of one arm, for training and pooled figures.
   void ForEachTimestep(int stage, int arm,

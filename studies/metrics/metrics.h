@@ -33,7 +33,8 @@ struct ArmMetrics {
   const MetricValue& operator[](std::string_view metric) const { return values[MetricIndex(metric)]; }
 };
 
-// Where missions flew with several networks (training.seeds), every interval includes the luck of training: it is at
+// Where missions flew with several networks (training.seeds), every interval includes the luck of training
+// (and of the warm-up, with training.own_warmups): it is at
 // least as wide as Student's t over the networks' own values.
 //
 // Everything of MetricDefinitions() for the missions of `arm`, failed and successful ones alike (R9).

@@ -62,5 +62,61 @@ TEST(TrainingTest, AWarmUpThatNoTrainingStageStandsBehindIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(scratch / "run"));
 }
 
+constexpr const char* kOwnWarmups =
+    "name: own\n"
+    "seed: 3\n"
+    "set: {{mission.world: {0}/sweeps/worlds/ridges.yaml, training.epochs: 2, training.batch: 32}}\n"
+    "stages:\n"
+    "  - {{name: walk, missions: {1}, set: {{strategy: random}}}}\n"
+    "  - {{name: learn, kind: train, after: walk}}\n"
+    "  - {{name: online, missions: 56, after: learn, set: {{strategy: ablation-1, training.seeds: {2}, "
+    "training.own_warmups: {3}}}}}\n";
+
+// Flown into a folder of its own, with the networks of `cache`, whose number is returned.
+int FlyOwn(const ScratchFolder& scratch, const std::string& name, int missions, int seeds, bool own,
+           const std::string& cache) {
+  const std::string sweep = (scratch / (name + ".yaml")).string();
+  std::ofstream(sweep) << fmt::format(fmt::runtime(kOwnWarmups), ED3R_SOURCE_DIR, missions, seeds, own);
+  const CommandResult flown = Ed3r(fmt::format("run {} --quiet --out {} --cache {}", sweep,
+                                               (scratch / name).string(), (scratch / cache).string()));
+  EXPECT_EQ(flown.status, 0) << flown.err;
+  int networks = 0;
+  for (const auto& file : std::filesystem::directory_iterator(scratch / cache))
+    networks += file.path().extension() == ".rfnn" ? 1 : 0;
+  return networks;
+}
+
+TEST(TrainingTest, EveryNetworkLearnsFromAWarmUpOfItsOwn) {
+  const ScratchFolder scratch;
+  EXPECT_EQ(FlyOwn(scratch, "own", 6, 2, true, "cache"), 2);
+  // The first network knows the first three missions and nothing else: one that was trained on these alone is the same.
+  EXPECT_EQ(FlyOwn(scratch, "alone", 3, 1, false, "cache"), 2);
+  // Two that share all six are others.
+  EXPECT_EQ(FlyOwn(scratch, "shared", 6, 2, false, "cache"), 4);
+  // So is a second one that shares the first's missions: the own one has learned from others.
+  EXPECT_EQ(FlyOwn(scratch, "few", 3, 2, false, "cache"), 5);
+
+  const auto replays = [&](const std::string& run, int mission) {
+    return Ed3r(fmt::format("replay {} ablation-1/{} --cache {}", (scratch / run).string(), mission,
+                            (scratch / "cache").string()))
+        .status;
+  };
+  EXPECT_EQ(replays("own", 0), 0);   // of the first network
+  EXPECT_EQ(replays("own", 55), 0);  // and the second: 28 places in turn
+}
+
+TEST(TrainingTest, AWarmUpThatIsTooShortForItsNetworksIsRefused) {
+  const ScratchFolder scratch;
+  const std::string sweep = (scratch / "own.yaml").string();
+  std::ofstream(sweep) << fmt::format(fmt::runtime(kOwnWarmups), ED3R_SOURCE_DIR, 5, 2, true);
+  const CommandResult result = Ed3r(fmt::format("run {} --out {}", sweep, (scratch / "run").string()));
+  EXPECT_EQ(result.status, 2) << result.err;
+  EXPECT_NE(result.err.find("stage walk has 5 missions to share out, allowed: 3 for each network and more; "
+                            "'--missions walk=6'"),
+            std::string::npos)
+      << result.err;
+  EXPECT_FALSE(std::filesystem::exists(scratch / "run"));
+}
+
 }  // namespace
 }  // namespace ed3r

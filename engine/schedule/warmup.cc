@@ -1,0 +1,89 @@
+#include "engine/schedule/warmup.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "engine/agents/strategy.h"
+#include "engine/core/check.h"
+
+namespace ed3r {
+namespace {
+
+constexpr int kFewestMissions = 3;  // one each to train, validate and test on
+
+// Stages that `stage` builds on, directly or not.
+std::set<std::string> Foundations(const SweepPlan& plan, const Stage& stage) {
+  std::set<std::string> found(stage.after.begin(), stage.after.end());
+  for (auto it = plan.stages.rbegin(); it != plan.stages.rend();
+       ++it)  // a stage stands behind those it builds on
+    if (found.contains(it->name)) found.insert(it->after.begin(), it->after.end());
+  return found;
+}
+
+std::string_view SourceOf(const Arm& learner) {
+  return FindStrategy(learner.config.mission.strategy).networks;
+}
+
+// Training stages among `foundations` that come after the flying stage of this name.
+std::set<std::string> TrainingsBehind(const SweepPlan& plan, const std::set<std::string>& foundations,
+                                      const std::string& flown) {
+  std::set<std::string> trainings;
+  for (const Stage& stage : plan.stages)
+    if (stage.kind == StageKind::kTrain && foundations.contains(stage.name) &&
+        Foundations(plan, stage).contains(flown))
+      trainings.insert(stage.name);
+  return trainings;
+}
+
+}  // namespace
+
+WarmupChoice ChooseWarmup(const SweepPlan& plan, const Stage& stage, const Arm& learner) {
+  const std::set<std::string> foundations = Foundations(plan, stage);
+  for (std::size_t s = 0; s < plan.stages.size(); ++s) {
+    const Stage& flown = plan.stages[s];
+    if (flown.kind != StageKind::kFly || !foundations.contains(flown.name)) continue;
+    std::set<std::string> trainings = TrainingsBehind(plan, foundations, flown.name);
+    if (trainings.empty()) continue;
+    for (std::size_t a = 0; a < flown.arms.size(); ++a)
+      if (flown.arms[a].config.mission.strategy == SourceOf(learner) &&
+          flown.arms[a].variant == learner.variant)
+        return {static_cast<int>(s), static_cast<int>(a), std::move(trainings)};
+  }
+  return {};
+}
+
+WarmupPart PartOf(const SweepPlan& plan, const WarmupChoice& warmup, const TrainingConfig& training,
+                  int seed) {
+  const int missions = plan.stages[static_cast<std::size_t>(warmup.stage)].missions;
+  if (!training.own_warmups) return {warmup.stage, warmup.arm, 0, missions};
+  const int share = missions / training.seeds;
+  return {warmup.stage, warmup.arm, seed * share, (seed + 1) * share};
+}
+
+void CheckWarmup(const SweepPlan& plan, const Stage& stage, const Arm& learner) {
+  const WarmupChoice choice = ChooseWarmup(plan, stage, learner);
+  const std::string who = fmt::format("{}: stage {}: arm {}", plan.file, stage.name, learner.name);
+  if (!choice)
+    throw UserError(
+        fmt::format("{} asks networks, so the stage must come after a training stage ('kind: train') that "
+                    "comes after a stage with strategy {}",
+                    who, SourceOf(learner)));
+  const Stage& warmup = plan.stages[static_cast<std::size_t>(choice.stage)];
+  const TrainingConfig& training = learner.config.training;
+  if (!training.own_warmups) return;
+  if (warmup.missions / training.seeds < kFewestMissions)
+    throw UserError(
+        fmt::format("{} asks {} networks of each kind (training.seeds) with a warm-up of their own "
+                    "(training.own_warmups), but stage {} has {} missions to share out, allowed: {} for each "
+                    "network and more; '--missions {}={}' gives them",
+                    who, training.seeds, warmup.name, warmup.missions, kFewestMissions, warmup.name,
+                    kFewestMissions * training.seeds));
+  if (warmup.precision)
+    throw UserError(
+        fmt::format("{} shares stage {} out among its networks (training.own_warmups), so that stage cannot "
+                    "end by a precision; leave one of the two out",
+                    who, warmup.name));
+}
+
+}  // namespace ed3r
