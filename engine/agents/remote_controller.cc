@@ -1,6 +1,7 @@
 #include "engine/agents/remote_controller.h"
 
 #include "engine/core/check.h"
+#include "engine/core/phase.h"
 
 namespace ed3r {
 
@@ -19,6 +20,7 @@ const CompletionOrder& RemoteController::Observe(const RcView& view, std::uint32
 
 MotionDecision RemoteController::ChooseMotion(const RcView& view, std::uint32_t timestep,
                                               CandidateTrace* trace) {
+  const InPhase deciding(Phase::kDecision);
   Observe(view, timestep);
   if (order_.hover) return Hover(view);
   MotionDecision decision = Ordered();

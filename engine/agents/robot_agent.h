@@ -8,6 +8,7 @@
 #include "engine/agents/context.h"
 #include "engine/agents/execution_policy.h"
 #include "engine/agents/views.h"
+#include "engine/core/phase.h"
 
 namespace ed3r {
 
@@ -17,6 +18,7 @@ class RobotAgent {
 
   // epsilon: the one in force at the RC in this timestep.
   ExecutionDecision ChooseExecution(const RobotView& view, double epsilon, std::uint32_t timestep) {
+    const InPhase deciding(Phase::kDecision);
     return policy_->Choose({view, epsilon, timestep});
   }
 

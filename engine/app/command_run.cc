@@ -25,7 +25,7 @@ struct Options {
   std::string cache = "results/cache";
   int threads = 0;
   std::string shard = "1/1";
-  bool quiet = false, repair = false, only_failed = false, accept_mixed = false;
+  bool quiet = false, repair = false, only_failed = false, accept_mixed = false, profile = false;
 };
 
 std::string NetworksText(const std::vector<ShelvedNetwork>& networks) {
@@ -129,6 +129,7 @@ int Run(const Options& options) {
   sweep.repair = options.repair;
   sweep.only_failed = options.only_failed;
   sweep.accept_mixed = options.accept_mixed;
+  sweep.profile = options.profile;
   sweep.half_width = HalfWidth;
   sweep.notes = DescribeMachine();
   sweep.notes.merge(NotesOf(options.sweep));
@@ -141,6 +142,7 @@ int Run(const Options& options) {
     if (!summary.flown.interrupted) fmt::print("{}\n", table);
     Tell(summary, sweep.dir);
   }
+  if (options.profile) fmt::print("time: {}\n", summary.profile.Text());
   if (summary.flown.interrupted) return ToldEnd();
   if (all_of_it && summary.flown.failed == 0 && summary.waiting_stage.empty())
     RememberFinishedRun(dir, summary.stored_before + summary.flown.stored, table,
@@ -177,6 +179,8 @@ Command AddRun(Program& program) {
               "Fly the missions that have failed again ('ed3r status' tells why), and none that are missing");
   parser.Flag("--accept-mixed", options->accept_mixed,
               "Continue a run that other code has begun; its report says so");
+  parser.Flag("--profile", options->profile,
+              "Tell where the time went (physics, decisions, training, ...); also kept for the report");
   parser.Flag("--quiet", options->quiet, "Neither progress nor table");
   return {parser, [options] { return Run(*options); }};
 }

@@ -10,6 +10,7 @@
 #include "engine/agents/robot_agent.h"
 #include "engine/core/check.h"
 #include "engine/core/interrupt.h"
+#include "engine/core/phase.h"
 #include "engine/mission/accounts.h"
 #include "engine/mission/invariants.h"
 #include "engine/mission/scenario.h"
@@ -166,6 +167,7 @@ void Mission::Sense(Execution execution) {
   // The RC runs the Full model only.
   const DetectionModel model =
       execution == Execution::kQuantized ? DetectionModel::kQuantized : DetectionModel::kFull;
+  const InPhase perceiving(Phase::kPerception);
   const Detection seen = sensor_->Sense(flight_.CurrentPose(), model, k_, view_begin_);
   last_.confidence_mean = seen.score.mean;
   last_.confidence_sd = seen.score.standard_deviation;

@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "engine/core/check.h"
+#include "engine/core/phase.h"
 #include "engine/rfnn/model_file.h"
 
 namespace ed3r {
@@ -81,6 +82,8 @@ std::vector<std::shared_ptr<const Model>> TrainAll(std::span<const TrainJob> job
 #pragma omp parallel for schedule(dynamic, 1) num_threads(std::max(1, options.threads))
   for (std::size_t at = 0; at < order.size(); ++at) {
     const std::size_t i = order[at];
+    const WatchedThread watched;
+    const InPhase training(Phase::kTraining);
     TrainControl control;
     control.stop = options.stop;
     control.level = options.level;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "engine/core/check.h"
+#include "engine/core/phase.h"
 #include "engine/robot/airframe.h"
 #include "engine/robot/controller.h"
 #include "engine/robot/lidar.h"
@@ -169,8 +170,12 @@ void Flight::Impl::StepPhysics(const FlightReference& reference) {
   const Wrench wrench = rotors.Step(controller.Step(state, reference));
   wind->Step();
   const Eigen::Vector3d lift_n = state.attitude * Eigen::Vector3d(0.0, 0.0, wrench.thrust_n);
-  world.Step(lift_n + airframe.DragN(state.velocity_mps - wind->VelocityMps()), wrench.torque_nm);
-  state = world.State();
+  const Eigen::Vector3d force_n = lift_n + airframe.DragN(state.velocity_mps - wind->VelocityMps());
+  {
+    const InPhase physics(Phase::kPhysics);
+    world.Step(force_n, wrench.torque_nm);
+    state = world.State();
+  }
   ++steps;
   ++physics_steps;
   path_m += kStepS * state.velocity_mps.norm();
@@ -255,6 +260,7 @@ FlownMove Flight::Impl::Execute(const MotionCommand& command, std::uint32_t the_
   FlownMove move;
   move.end = pose;
   if (command.hover) return move;
+  const InPhase control(Phase::kControl);
   ED3R_CHECK(command.displacement_m.allFinite() && std::isfinite(command.turn_rad), "command is not finite");
 
   const Eigen::Vector3d way_m = Target(command.displacement_m) - pose.position_m;

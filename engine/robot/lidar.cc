@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/core/check.h"
+#include "engine/core/phase.h"
 
 namespace ed3r {
 namespace {
@@ -38,6 +39,7 @@ LidarBundle::LidarBundle(const StaticGeometry& geometry, double tube_radius_m, d
     : geometry_(geometry), range_m_(range_m), offset_m_(SpreadOverDisc(tube_radius_m)) {}
 
 double LidarBundle::FreeDistance(const Eigen::Vector3d& centre_m, const Eigen::Vector3d& direction) const {
+  const InPhase lidar(Phase::kLidar);
   const bool upright = std::abs(direction.z()) > 0.7;
   const Eigen::Vector3d across =
       direction.cross(upright ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ()).normalized();

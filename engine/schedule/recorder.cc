@@ -64,6 +64,8 @@ void Recorder::Loop() {
 }
 
 void Recorder::Store(const Finished& finished) {
+  const WatchedThread watched;
+  const InPhase storing(Phase::kStore);
   if (finished.record) {
     store_.Put(finished.id, *finished.record, finished.wall_s);
     ++progress_.stored;
@@ -77,6 +79,8 @@ void Recorder::Store(const Finished& finished) {
 
 void Recorder::CommitWhenDue() {
   if (!oldest_uncommitted_ || Clock::now() - *oldest_uncommitted_ < options_.commit_every) return;
+  const WatchedThread watched;
+  const InPhase storing(Phase::kStore);
   store_.Commit();
   oldest_uncommitted_.reset();
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "engine/core/phase.h"
 #include "engine/core/progress.h"
 #include "engine/mission/record.h"
 #include "engine/schedule/bounded_queue.h"
@@ -35,7 +36,10 @@ class Recorder {
   Recorder& operator=(const Recorder&) = delete;
 
   // Hands a mission over; waits while the queue is full. It is dropped when the store has failed.
-  void Offer(Finished finished) { queue_.Push(std::move(finished)); }
+  void Offer(Finished finished) {
+    const InPhase waiting(Phase::kWaiting);
+    queue_.Push(std::move(finished));
+  }
 
   // Ends the run: Finish() commits what has been offered and throws this, unless another error came first.
   void Abandon(const std::exception_ptr& error);

@@ -9,6 +9,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/interrupt.h"
+#include "engine/core/phase.h"
 #include "engine/mission/invariants.h"
 #include "engine/perception/vision/frame_detector.h"
 #include "engine/schedule/parallel_for.h"
@@ -47,6 +48,7 @@ Failure FailureOf(const std::exception_ptr& thrown) {
 std::optional<Finished> FlyOne(const FlyFn& fly, const RunId& id, const std::atomic<bool>& stop) {
   Finished finished{.id = id, .record = std::nullopt, .failure = {}, .wall_s = 0};
   const auto begin = std::chrono::steady_clock::now();
+  const InPhase mission(Phase::kMission);
   try {
     finished.record = fly(id, stop);
     CheckStorable(*finished.record);
@@ -76,6 +78,7 @@ RunSummary RunMissions(const std::vector<RunId>& todo, const FlyFn& fly, ResultS
   Recorder recorder(store, options, missions, kQueuedPerThread * static_cast<std::size_t>(threads));
   ParallelFor(threads, missions, [&](std::int64_t i) {
     if (recorder.stop().load()) return;
+    const WatchedThread watched;
     try {
       if (auto finished = FlyOne(fly, todo[static_cast<std::size_t>(i)], recorder.stop()))
         recorder.Offer(std::move(*finished));

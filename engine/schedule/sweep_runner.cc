@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "engine/agents/strategy.h"
@@ -119,6 +120,20 @@ class Stages {
   }
 
   SweepSummary Run() {
+    const WatchedThread watched;
+    std::optional<PhaseSampler> sampler;
+    if (options_.profile) sampler.emplace();
+    RunStages();
+    if (sampler) {
+      summary_.profile = sampler->Finish();
+      store_->PutNote(kProfileNote, summary_.profile.Text());
+      store_->Commit();
+    }
+    return std::move(summary_);
+  }
+
+ private:
+  void RunStages() {
     if (options_.only_failed) again_ = store_->Failed();
     for (std::size_t i = 0; i < plan_.stages.size() && !summary_.flown.interrupted; ++i) {
       if (!options_.stage.empty() && plan_.stages[i].name != options_.stage) continue;
@@ -132,10 +147,8 @@ class Stages {
       }
       plan_.stages[i].kind == StageKind::kTrain ? Train(plan_.stages[i].name) : Fly(static_cast<int>(i));
     }
-    return std::move(summary_);
   }
 
- private:
   // Nothing is built on damaged missions, and a run that ends well leaves none behind.
   void LookForDamage() {
     const std::vector<DamagedMission> damage = store_->FindDamage();

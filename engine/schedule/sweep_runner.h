@@ -9,6 +9,7 @@
 
 #include "engine/mission/mission.h"
 #include "engine/schedule/inputs.h"
+#include "engine/schedule/phase_sampler.h"
 #include "engine/schedule/progress_of_stage.h"
 #include "engine/schedule/scheduler.h"
 #include "engine/schedule/todo.h"
@@ -43,6 +44,7 @@ struct SweepOptions {
   ScheduleOptions schedule;
   bool repair = false;                       // take damaged missions out and fly them again
   bool only_failed = false;                  // fly what has failed again, and nothing that is missing
+  bool profile = false;                      // look where the time goes
   bool accept_mixed = false;                 // continue what other code has begun
   HalfWidthFn half_width;                    // asked by stages with a precision
   OutsideFn outside;                         // without it a plan with such arms is refused
@@ -56,6 +58,7 @@ struct SweepSummary {
   std::int64_t stored_before = 0;        // missions that were there already
   std::vector<DamagedMission> repaired;  // taken out to be flown again
   std::vector<ShelvedNetwork> networks;  // trained or found
+  PhaseTimes profile;                    // of options.profile; also a note of the session, kProfileNote
   std::string waiting_stage;  // a stage that could not begin because a shard or a failed mission is missing
 };
 

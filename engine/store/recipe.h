@@ -32,6 +32,9 @@ struct InputFile {
   bool operator==(const InputFile&) const = default;
 };
 
+// The note in which a session tells where its time went, where that was asked.
+inline constexpr const char* kProfileNote = "time by phase";
+
 // Stores may be continued and merged only when all but files and notes is equal.
 struct Recipe {
   std::string plan_text;  // SweepPlan::CanonicalText()

@@ -85,6 +85,13 @@ class SqliteStore final : public ResultStore {
     Commit();
   }
 
+  void PutNote(const std::string& name, const std::string& text) override {
+    InGroup([&] {
+      Statement(file_.database(), "INSERT OR REPLACE INTO session_notes VALUES (?, ?, ?)")
+          .Run(session_, name, text);
+    });
+  }
+
   void Commit() override {
     InGroup([&] { group_->Commit(); });
     group_.reset();

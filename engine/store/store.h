@@ -58,6 +58,9 @@ class ResultStore {
   // The networks of the arms that fly next. UserError when one of them has flown with another.
   virtual void PutNetworks(const FlownNetworks& networks) = 0;
 
+  // On this session, beside recipe.notes; a note of the same name is replaced.
+  virtual void PutNote(const std::string& name, const std::string& text) = 0;
+
   virtual void Commit() = 0;  // everything put so far survives a kill
 };
 

@@ -55,8 +55,8 @@ std::string WhatWasRun(const Provenance& p) {
          Fact("code", fmt::format("commit {}, sources {}{}",
                                   HtmlText(p.commit.empty() ? "unknown" : p.commit), Code(p.code_version),
                                   p.mixed_code ? "; <b>mixed: several versions flew this run</b>" : "")) +
-         Fact("machine", machine) + Fact("when", HtmlText(when)) +
-         Fact("digest of the results", Code(p.digest)) + "</dl></section>\n";
+         Fact("time by phase", HtmlText(p.time_by_phase)) + Fact("machine", machine) +
+         Fact("when", HtmlText(when)) + Fact("digest of the results", Code(p.digest)) + "</dl></section>\n";
 }
 
 std::string TableCell(const ArmMetrics& arm, std::size_t metric) {

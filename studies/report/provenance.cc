@@ -8,6 +8,7 @@
 #include "engine/core/utf8.h"
 #include "engine/store/digest.h"
 #include "engine/store/reader.h"
+#include "engine/store/recipe.h"
 
 namespace ed3r {
 namespace {
@@ -62,8 +63,10 @@ Provenance ReadProvenance(const std::string& dir) {
   const std::vector<Session> all = reader.Sessions();
   const bool any_flew = std::any_of(all.begin(), all.end(), Flew);
   for (const Session& session : all)
-    if (Flew(session) || !any_flew)
+    if (Flew(session) || !any_flew) {
       provenance.sessions.push_back({session.host, session.begun_utc, session.ended_utc, session.notes});
+      if (session.notes.contains(kProfileNote)) provenance.time_by_phase = Note(session.notes, kProfileNote);
+    }
   if (!provenance.sessions.empty()) {
     const std::map<std::string, std::string>& notes = provenance.sessions.back().notes;
     provenance.sweep_file = SweepFileOf(notes);

@@ -13,10 +13,11 @@ struct Provenance {
   std::string sweep_file, command;  // of the last of `sessions`; "" where it left no notes
   std::string question;  // of the study, from its notes or its sweep file where that is still there; or ""
   std::string seed;
-  std::string code_version;  // identity of the code that decided results, by subsystem
-  bool mixed_code = false;   // several versions of one subsystem flew
-  std::string commit;        // of the last of `sessions`; "unknown" outside a checkout
-  std::string digest;        // of what is stored
+  std::string code_version;   // identity of the code that decided results, by subsystem
+  bool mixed_code = false;    // several versions of one subsystem flew
+  std::string time_by_phase;  // of the last session that was flown with --profile; "" where none
+  std::string commit;         // of the last of `sessions`; "unknown" outside a checkout
+  std::string digest;         // of what is stored
   std::int64_t planned = 0, stored = 0, failed = 0;
   double simulated_h = 0;                     // flown time of all missions
   double wall_h = 0;                          // spent on them, summed over threads

@@ -292,6 +292,22 @@ TEST(RunTest, BadInputWritesNothing) {
   EXPECT_FALSE(fs::exists(out));
 }
 
+TEST(RunTest, ProfileTellsWhereTheTimeWentAndChangesNothing) {
+  const ScratchFolder scratch;
+  const std::string run = "run " + kSweeps + "rbs.yaml --missions 4 --quiet --out ";
+  const std::string with = (scratch / "with").string(), without = (scratch / "without").string();
+  const CommandResult told = Ed3r(run + with + " --profile");
+  ASSERT_EQ(told.status, 0) << told.err;
+  for (const char* word : {"time: ", "physics ", "control ", " thread seconds\n"})
+    EXPECT_NE(told.out.find(word), std::string::npos) << told.out;
+  ASSERT_EQ(Ed3r(run + without).status, 0);
+  EXPECT_EQ(Ed3r("digest " + with).out, Ed3r("digest " + without).out);
+  const std::string out = (scratch / "report").string();
+  ASSERT_EQ(Ed3r("report " + with + " --no-figures --no-missions --out " + out).status, 0);
+  const auto manifest = nlohmann::json::parse(ReadAll(fs::path(out) / "manifest.json"));
+  EXPECT_NE(manifest["machine"]["time by phase"].get<std::string>().find("physics"), std::string::npos);
+}
+
 TEST(RunTest, PlanFliesNothing) {
   const CommandResult result = Ed3r("plan --json " + kSweeps + "paper.yaml");
   ASSERT_EQ(result.status, 0) << result.err;

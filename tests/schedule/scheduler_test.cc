@@ -58,6 +58,7 @@ class FakeStore final : public ResultStore {
   std::vector<DamagedMission> FindDamage() override { return {}; }
   void Remove(const std::vector<DamagedMission>&) override {}
   void PutNetworks(const FlownNetworks&) override {}
+  void PutNote(const std::string&, const std::string&) override {}
   void Commit() override {
     ++commits;
     if (oldest_) longest_wait = std::max(longest_wait, steady_clock::now() - *oldest_);
