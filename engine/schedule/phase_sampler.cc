@@ -11,7 +11,7 @@ namespace ed3r {
 namespace {
 
 // Not a divisor of anything that a run does regularly, such as its commits and progress lines.
-constexpr std::chrono::microseconds kInterval{1973};
+constexpr std::chrono::microseconds kInterval{4973};
 
 }  // namespace
 

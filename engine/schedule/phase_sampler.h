@@ -1,4 +1,4 @@
-// Where the time of a run goes: looks every other millisecond at what each watched thread is at (core/phase.h).
+// Where the time of a run goes: looks every five milliseconds at what each watched thread is at (core/phase.h).
 //
 // Sampling costs the watched threads nothing but their marks, and no phase is too short for it: a step of a microsecond
 // that happens often is seen as often as it takes. A share p of n samples is known to about +-2 sqrt(p (1 - p) / n).
