@@ -28,6 +28,7 @@ struct MissionConfig {
   StartYaw start_yaw = StartYaw::kDrawn;
   double start_yaw_deg = 0.0;
   int max_timesteps = 2000;
+  double physics_hz = 240.0;
 
   template <class Self, class Visitor>
   static void Describe(Self& self, Visitor&& visit) {
@@ -57,6 +58,12 @@ struct MissionConfig {
            .max = 100000,
            .source = "R9",
            .meaning = "a mission that is longer is a failed record (the battery ends it far earlier)"});
+    visit("physics_hz", self.physics_hz,
+          {.unit = "Hz",
+           .min = 60,
+           .max = 4800,
+           .source = "none in the paper",
+           .meaning = "steps of flight, its controller and rotors a second"});
   }
 };
 

@@ -32,8 +32,11 @@ double YawOf(const Eigen::Quaterniond& q) {
   return std::remainder(2.0 * std::atan2(q.z(), q.w()), 2.0 * std::numbers::pi);
 }
 
-FlightController::FlightController(const Airframe& airframe, double tilt_max_rad)
-    : airframe_(airframe), gain_(BandwidthsOf(airframe)), tilt_max_tan_(std::tan(tilt_max_rad)) {}
+FlightController::FlightController(const Airframe& airframe, double tilt_max_rad, double step_s)
+    : airframe_(airframe),
+      gain_(BandwidthsOf(airframe)),
+      tilt_max_tan_(std::tan(tilt_max_rad)),
+      step_s_(step_s) {}
 
 FlightController::Hover FlightController::StartHover(const Eigen::Vector3d& wind_mps, double yaw_rad) {
   wind_mps_ = wind_mps;
@@ -67,9 +70,9 @@ FlightController::Force FlightController::WantedForce(const RigidBodyState& stat
       airframe_.mass_kg * acceleration - airframe_.DragN(r.velocity_mps - wind_mps_);
   const Eigen::Vector3d force_n = LimitForceN(asked_n);
   // The integral learns nothing from an error that the rotors cannot mend.
-  if (force_n == asked_n) integral_mps2_ += FlightWorld::kStepS * integral_rate;
+  if (force_n == asked_n) integral_mps2_ += step_s_ * integral_rate;
 
-  const Eigen::Vector3d measured = (state.velocity_mps - last_velocity_mps_) / FlightWorld::kStepS;
+  const Eigen::Vector3d measured = (state.velocity_mps - last_velocity_mps_) / step_s_;
   last_velocity_mps_ = state.velocity_mps;
   const Eigen::Vector3d speed_error_rate =
       r.acceleration_mps2 - measured + gain_.position_radps * (r.velocity_mps - state.velocity_mps);

@@ -31,7 +31,8 @@ struct FlightReference {
 
 class FlightController {
  public:
-  FlightController(const Airframe& airframe, double tilt_max_rad);
+  // step_s: of physics.
+  FlightController(const Airframe& airframe, double tilt_max_rad, double step_s);
 
   // Starts from a hover in a wind, world axes: a robot that has hovered for a while has found out how hard
   // the wind pushes it. Returns the attitude and the wrench of that hover.
@@ -58,6 +59,7 @@ class FlightController {
   const Airframe& airframe_;
   const Bandwidths gain_;
   double tilt_max_tan_;
+  double step_s_;
   Eigen::Vector3d wind_mps_ = Eigen::Vector3d::Zero();  // as at the last hover
   Eigen::Vector3d last_velocity_mps_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d integral_mps2_ = Eigen::Vector3d::Zero();

@@ -18,7 +18,6 @@
 namespace ed3r {
 namespace {
 
-constexpr double kStepS = FlightWorld::kStepS;
 constexpr double kNothingM = 1e-3;    // a shorter leg is not flown
 constexpr double kNothingRad = 1e-3;  // likewise a turn
 constexpr double kLeastHopM = 0.1;    // a leg with less room is not begun
@@ -43,12 +42,15 @@ double TubeMarginM(const EnvironmentConfig& environment) {
   return kTubeMarginM + kTubeMarginGustS * environment.gust_mps;
 }
 
-int StepsPer(double rate_hz) { return std::max(1, static_cast<int>(std::lround(1.0 / (rate_hz * kStepS)))); }
+// Steps from one beat of `rate_hz` to the next.
+int StepsPer(double rate_hz, double step_s) {
+  return std::max(1, static_cast<int>(std::lround(1.0 / (rate_hz * step_s))));
+}
 
 // Where along the leg the robot would rest if it braked one step after a time.
-double RestPoint(const Profile& profile, double time_s) {
+double RestPoint(const Profile& profile, double time_s, double step_s) {
   const ProfilePoint front = profile.FrontAt(time_s);
-  return front.position + profile.BrakingDistance(front) + front.speed * kStepS;
+  return front.position + profile.BrakingDistance(front) + front.speed * step_s;
 }
 
 }  // namespace
@@ -60,16 +62,17 @@ struct Flight::Impl {
         config(the_config),
         seed(the_seed),
         scenario(the_scenario),
+        step_s(1.0 / config.mission.physics_hz),
         airframe(FlyableAirframe(config)),
         envelope(EnvelopeOf(airframe, config)),
         world(scene.Geometry(), {airframe.mass_kg, airframe.size_m, airframe.inertia_kgm2},
-              airframe.gravity_mps2),
-        rotors(airframe),
-        controller(airframe, envelope.tilt_max_rad),
+              airframe.gravity_mps2, step_s),
+        rotors(airframe, step_s),
+        controller(airframe, envelope.tilt_max_rad, step_s),
         lidars(scene.Geometry(), airframe.BoundingRadiusM() + TubeMarginM(config.environment),
                config.sensing.lidar_range_m),
-        scan_every(StepsPer(config.sensing.lidar_rate_hz)),
-        trace_every(StepsPer(kTraceHz)),
+        scan_every(StepsPer(config.sensing.lidar_rate_hz, step_s)),
+        trace_every(StepsPer(kTraceHz, step_s)),
         pose(start) {}
 
   struct Leg {
@@ -103,6 +106,7 @@ struct Flight::Impl {
   const Config config;
   const std::uint64_t seed;
   const std::uint32_t scenario;
+  const double step_s;
   const Airframe airframe;
   const FlightEnvelope envelope;
   FlightWorld world;
@@ -141,7 +145,7 @@ void Flight::Impl::TakeOver(std::uint32_t the_timestep, double turn_rad) {
   timestep = the_timestep;
   steps = 0;
   path_m = 0.0;
-  wind.emplace(config.environment, seed, scenario, timestep);
+  wind.emplace(config.environment, seed, scenario, timestep, step_s);
   const FlightController::Hover hover = controller.StartHover(wind->VelocityMps(), pose.yaw_rad);
   rotors.Settle(hover.wrench);
   state = {.position_m = pose.position_m, .attitude = hover.attitude};
@@ -155,7 +159,7 @@ void Flight::Impl::TakeOver(std::uint32_t the_timestep, double turn_rad) {
 
 FlightReference Flight::Impl::ReferenceAt(const Eigen::Vector3d& start_m, const Eigen::Vector3d& direction,
                                           const ProfilePoint& along) const {
-  const ProfilePoint heading = turn.At(steps * kStepS);
+  const ProfilePoint heading = turn.At(steps * step_s);
   return {.position_m = start_m + along.position * direction,
           .velocity_mps = along.speed * direction,
           .acceleration_mps2 = along.acceleration * direction,
@@ -178,13 +182,13 @@ void Flight::Impl::StepPhysics(const FlightReference& reference) {
   }
   ++steps;
   ++physics_steps;
-  path_m += kStepS * state.velocity_mps.norm();
+  path_m += step_s * state.velocity_mps.norm();
   if (steps % trace_every == 0) Record();
 }
 
 void Flight::Impl::Record() const {
   if (trace == nullptr) return;
-  trace->Record({timestep, steps * kStepS, state.position_m, state.velocity_mps, YawOf(state.attitude)});
+  trace->Record({timestep, steps * step_s, state.position_m, state.velocity_mps, YawOf(state.attitude)});
 }
 
 bool Flight::Impl::SettledAt(const Eigen::Vector3d& position_m) const {
@@ -194,7 +198,7 @@ bool Flight::Impl::SettledAt(const Eigen::Vector3d& position_m) const {
 }
 
 bool Flight::Impl::TurnSettled() const {
-  if (steps * kStepS < turn.DurationS()) return false;
+  if (steps * step_s < turn.DurationS()) return false;
   const double wanted_rad = pose.yaw_rad + turn_sign * turn.Length();
   const double error_rad = std::remainder(YawOf(state.attitude) - wanted_rad, 2.0 * std::numbers::pi);
   return std::abs(error_rad) < kSettledRad && std::abs(state.rate_radps.z()) < kSettledRadps;
@@ -203,10 +207,10 @@ bool Flight::Impl::TurnSettled() const {
 // The safety rule at one step of a leg: looks when the LiDARs do, and compares.
 bool Flight::Impl::MustBrake(LegWatch& watch, const Profile& profile, int step) const {
   if (step % scan_every == 0) {
-    const double next_rest_m = RestPoint(profile, (step + scan_every) * kStepS);
+    const double next_rest_m = RestPoint(profile, (step + scan_every) * step_s, step_s);
     watch.Tick(state.position_m, std::min(profile.Length(), next_rest_m));
   }
-  return watch.RestLimitM() < std::min(profile.Length(), RestPoint(profile, step * kStepS));
+  return watch.RestLimitM() < std::min(profile.Length(), RestPoint(profile, step * step_s, step_s));
 }
 
 Flight::Impl::LegResult Flight::Impl::FlyLeg(const Leg& leg) {
@@ -225,7 +229,7 @@ Flight::Impl::LegResult Flight::Impl::FlyLeg(const Leg& leg) {
   const Eigen::Vector3d start_m = anchor_m;
   Profile profile(leg.length_m, leg.limits);
   for (int step = 0;; ++step) {
-    const double time_s = step * kStepS;
+    const double time_s = step * step_s;
     const bool under_way = time_s < profile.DurationS();
     if (watch && under_way && !result.halted && MustBrake(*watch, profile, step)) {
       profile.BrakeAt(time_s);
@@ -250,10 +254,10 @@ Flight::Impl::LegResult Flight::Impl::FlyLeg(const Leg& leg) {
 double Flight::Impl::FinishTurn() {
   if (turn.Length() == 0.0) return 0.0;
   const std::int64_t first = steps;
-  const double limit_s = std::max(turn.DurationS(), steps * kStepS) + kSettleLimitS;
-  while (!TurnSettled() && steps * kStepS < limit_s)
+  const double limit_s = std::max(turn.DurationS(), steps * step_s) + kSettleLimitS;
+  while (!TurnSettled() && steps * step_s < limit_s)
     StepPhysics(ReferenceAt(anchor_m, Eigen::Vector3d::Zero(), {}));
-  return static_cast<double>(steps - first) * kStepS;
+  return static_cast<double>(steps - first) * step_s;
 }
 
 FlownMove Flight::Impl::Execute(const MotionCommand& command, std::uint32_t the_timestep) {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/world/flight_world.h"
-
 namespace ed3r {
 
 RotorThrusts Mix(const Airframe& airframe, const Wrench& wanted) {
@@ -44,8 +42,8 @@ Wrench WrenchOf(const Airframe& airframe, const RotorThrusts& thrusts) {
   return wrench;
 }
 
-Rotors::Rotors(const Airframe& airframe)
-    : airframe_(airframe), follow_(1.0 - std::exp(-FlightWorld::kStepS / kMotorLagS)) {}
+Rotors::Rotors(const Airframe& airframe, double step_s)
+    : airframe_(airframe), follow_(1.0 - std::exp(-step_s / kMotorLagS)) {}
 
 void Rotors::Settle(const Wrench& wanted) { thrusts_n_ = Mix(airframe_, wanted); }
 

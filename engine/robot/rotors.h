@@ -31,7 +31,8 @@ Wrench WrenchOf(const Airframe& airframe, const RotorThrusts& thrusts);
 
 class Rotors {
  public:
-  explicit Rotors(const Airframe& airframe);
+  // step_s: of physics.
+  Rotors(const Airframe& airframe, double step_s);
 
   // Present thrusts, as after a long time of that command.
   void Settle(const Wrench& wanted);

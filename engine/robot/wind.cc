@@ -2,14 +2,14 @@
 
 #include <cmath>
 
-#include "engine/world/flight_world.h"
-
 namespace ed3r {
 
 Wind::Wind(const EnvironmentConfig& environment, std::uint64_t seed, std::uint32_t scenario,
-           std::uint32_t timestep)
+           std::uint32_t timestep, double step_s)
     : stream_(seed, scenario, Purpose::kWind, timestep),
       gust_mps_(environment.gust_mps),
+      keep_(std::exp(-step_s / kGustCorrelationS)),
+      renew_(std::sqrt(1.0 - keep_ * keep_)),  // keeps the standard deviation
       mean_mps_(environment.wind_x_mps, environment.wind_y_mps, 0.0),
       velocity_mps_(mean_mps_) {
   if (gust_mps_ > 0.0) velocity_mps_ += Draw(gust_mps_);
@@ -24,9 +24,7 @@ Eigen::Vector3d Wind::Draw(double sigma_mps) {
 
 void Wind::Step() {
   if (gust_mps_ <= 0.0) return;
-  static const double keep = std::exp(-FlightWorld::kStepS / kGustCorrelationS);
-  static const double renew = std::sqrt(1.0 - keep * keep);  // keeps the standard deviation
-  velocity_mps_ = mean_mps_ + keep * (velocity_mps_ - mean_mps_) + Draw(renew * gust_mps_);
+  velocity_mps_ = mean_mps_ + keep_ * (velocity_mps_ - mean_mps_) + Draw(renew_ * gust_mps_);
 }
 
 }  // namespace ed3r

@@ -19,7 +19,7 @@ inline constexpr double kGustCorrelationS = 3.0;
 class Wind {
  public:
   Wind(const EnvironmentConfig& environment, std::uint64_t seed, std::uint32_t scenario,
-       std::uint32_t timestep);
+       std::uint32_t timestep, double step_s);  // step_s: of physics
 
   const Eigen::Vector3d& VelocityMps() const { return velocity_mps_; }
 
@@ -31,6 +31,7 @@ class Wind {
 
   Stream stream_;
   double gust_mps_;
+  double keep_, renew_;  // of a gust, in one step
   Eigen::Vector3d mean_mps_;
   Eigen::Vector3d velocity_mps_;
 };

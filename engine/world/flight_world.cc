@@ -66,8 +66,9 @@ class SceneBody : public btCollisionObject {
 }  // namespace
 
 struct FlightWorld::Impl {
-  Impl(const StaticGeometry& the_geometry, const RigidBodySpec& robot, double gravity_mps2)
+  Impl(const StaticGeometry& the_geometry, const RigidBodySpec& robot, double gravity_mps2, double the_step_s)
       : geometry(the_geometry),
+        step_s(static_cast<float>(the_step_s)),
         hull_radius_m(0.5 * robot.size_m.norm()),
         configuration(SmallPools()),
         dispatcher(&configuration),
@@ -126,15 +127,14 @@ struct FlightWorld::Impl {
   // What stepSimulation does to a body that nothing touches, operation by operation (forces as the constraint
   // solver's external impulses), so that both ways give the same bits.
   void StepFreely() {
-    constexpr auto kStep = static_cast<float>(kStepS);
     body.applyGravity();
-    const btVector3 push = body.getTotalForce() * body.getInvMass() * kStep;
-    btVector3 spin = body.getTotalTorque() * body.getInvInertiaTensorWorld() * kStep;
-    spin += body.computeGyroscopicImpulseImplicit_Body(kStep);
+    const btVector3 push = body.getTotalForce() * body.getInvMass() * step_s;
+    btVector3 spin = body.getTotalTorque() * body.getInvInertiaTensorWorld() * step_s;
+    spin += body.computeGyroscopicImpulseImplicit_Body(step_s);
     body.setLinearVelocity(body.getLinearVelocity() + push);
     body.setAngularVelocity(body.getAngularVelocity() + spin);
     btTransform next;
-    body.predictIntegratedTransform(kStep, next);
+    body.predictIntegratedTransform(step_s, next);
     body.proceedToTransform(next);
     body.clearForces();
   }
@@ -149,6 +149,7 @@ struct FlightWorld::Impl {
   }
 
   const StaticGeometry& geometry;
+  const float step_s;
   const double hull_radius_m;
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher;
@@ -166,9 +167,10 @@ struct FlightWorld::Impl {
   btVector3 asked_at_m{0, 0, 0};
 };
 
-FlightWorld::FlightWorld(const StaticGeometry& geometry, const RigidBodySpec& robot, double gravity_mps2) {
+FlightWorld::FlightWorld(const StaticGeometry& geometry, const RigidBodySpec& robot, double gravity_mps2,
+                         double step_s) {
   const std::lock_guard lock(WorldMutex());
-  impl_ = std::make_unique<Impl>(geometry, robot, gravity_mps2);
+  impl_ = std::make_unique<Impl>(geometry, robot, gravity_mps2, step_s);
 }
 
 FlightWorld::~FlightWorld() {
@@ -213,7 +215,7 @@ void FlightWorld::Step(const Eigen::Vector3d& force_world_n, const Eigen::Vector
   std::unique_lock<std::mutex> lock;
   if (!impl_->stepped) lock = std::unique_lock(WorldMutex());
   impl_->stepped = true;
-  impl_->world.stepSimulation(static_cast<float>(kStepS), /*maxSubSteps=*/0);
+  impl_->world.stepSimulation(impl_->step_s, /*maxSubSteps=*/0);
   if (impl_->Touching()) ++impl_->contact_steps;
 }
 

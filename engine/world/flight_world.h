@@ -30,9 +30,10 @@ struct RigidBodyState {
 
 class FlightWorld {
  public:
-  static constexpr double kStepS = 1.0 / 240.0;
+  static constexpr double kUsualStepS = 1.0 / 240.0;
 
-  FlightWorld(const StaticGeometry& geometry, const RigidBodySpec& robot, double gravity_mps2);
+  FlightWorld(const StaticGeometry& geometry, const RigidBodySpec& robot, double gravity_mps2,
+              double step_s = kUsualStepS);
   ~FlightWorld();
   FlightWorld(const FlightWorld&) = delete;
   FlightWorld& operator=(const FlightWorld&) = delete;
@@ -40,7 +41,7 @@ class FlightWorld {
   void SetState(const RigidBodyState& state);
   RigidBodyState State() const;
 
-  // One step of kStepS under gravity, a force in world axes and a torque in body axes.
+  // One step of step_s under gravity, a force in world axes and a torque in body axes.
   void Step(const Eigen::Vector3d& force_world_n, const Eigen::Vector3d& torque_body_nm);
 
   // Steps so far in which the robot touched ground or tree.

@@ -14,7 +14,7 @@ TEST(WindTest, WithoutGustsIsTheMean) {
   EnvironmentConfig environment;
   environment.wind_x_mps = 3;
   environment.wind_y_mps = -4;
-  Wind wind(environment, 1, 2, 3);
+  Wind wind(environment, 1, 2, 3, FlightWorld::kUsualStepS);
   for (int i = 0; i < 100; ++i) wind.Step();
   EXPECT_EQ(wind.VelocityMps(), Eigen::Vector3d(3, -4, 0));
 }
@@ -23,11 +23,11 @@ TEST(WindTest, GustsHaveTheirSpreadAndMemory) {
   EnvironmentConfig environment;
   environment.wind_x_mps = 3;
   environment.gust_mps = 2;
-  const int lag = static_cast<int>(kGustCorrelationS / FlightWorld::kStepS);
+  const int lag = static_cast<int>(kGustCorrelationS / FlightWorld::kUsualStepS);
   const int runs = 4000;
   double sum = 0, square = 0, product = 0;
   for (int run = 0; run < runs; ++run) {
-    Wind wind(environment, 7, run, 0);
+    Wind wind(environment, 7, run, 0, FlightWorld::kUsualStepS);
     const double before = wind.VelocityMps().x() - 3;
     for (int i = 0; i < lag; ++i) wind.Step();
     const double after = wind.VelocityMps().x() - 3;
@@ -45,7 +45,7 @@ TEST(WindTest, IsAFunctionOfItsKey) {
   EnvironmentConfig environment;
   environment.gust_mps = 2;
   const auto after = [&](std::uint64_t seed, std::uint32_t scenario, std::uint32_t timestep) {
-    Wind wind(environment, seed, scenario, timestep);
+    Wind wind(environment, seed, scenario, timestep, FlightWorld::kUsualStepS);
     for (int i = 0; i < 10; ++i) wind.Step();
     return wind.VelocityMps();
   };

@@ -35,7 +35,7 @@ TEST(FlightWorldTest, FallsFreelyAndHoversUnderItsWeight) {
   const int n = 240;
   for (int i = 0; i < n; ++i) world.Step(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
   // Semi-implicit Euler: v_n = -g n h, z_n = z_0 - g h^2 n (n + 1) / 2.
-  const double h = FlightWorld::kStepS;
+  const double h = FlightWorld::kUsualStepS;
   EXPECT_NEAR(world.State().velocity_mps.z(), -kGravity * n * h, 1e-4);
   EXPECT_NEAR(world.State().position_m.z(), 90 - kGravity * h * h * n * (n + 1) / 2, 2e-3);
 
@@ -155,8 +155,8 @@ TEST(FlightWorldTest, ClearAirHidesNoContact) {
       // Bullet thickens ground and robot by 4.5 cm. It looks where the last step ended, up to a step's way too deep,
       // and has moved the robot by another step before it can be asked.
       const double gap_m = lowest_corner_m(world.State()) - 5.0;
-      EXPECT_GT(gap_m, -2.0 * speed_mps * FlightWorld::kStepS) << speed_mps << " " << start;
-      EXPECT_LT(gap_m, 0.08 + speed_mps * FlightWorld::kStepS) << speed_mps << " " << start;
+      EXPECT_GT(gap_m, -2.0 * speed_mps * FlightWorld::kUsualStepS) << speed_mps << " " << start;
+      EXPECT_LT(gap_m, 0.08 + speed_mps * FlightWorld::kUsualStepS) << speed_mps << " " << start;
     }
   }
 }
