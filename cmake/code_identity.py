@@ -19,14 +19,14 @@ LISTS = [
     # Cannot decide a number: commands, pictures, files and their names, progress, messages, measurements. How a sweep file
     # is read is left out because what comes of it, the plan, is compared as it is.
     ("", ["engine/app/*", "engine/python/*", "*/bench/*", "engine/store/*",
-          "engine/schedule/batch/*", "engine/world/map_*", "engine/perception/render/data_set.*",
+          "engine/schedule/batch/*", "engine/world/map_*", "engine/perception/render/training_views.*",
           "engine/perception/render/pictures.*", "engine/core/progress.*", "engine/core/interrupt.*",
           "engine/core/suggest.*", "engine/core/version.*", "engine/core/sealed_file.*", "engine/core/shipped.*"]),
     ("flight", ["engine/sweep/plan.*"]),
     ("", ["engine/sweep/*"]),
     ("pixels", ["engine/perception/pixels/*", "engine/perception/render/*", "engine/perception/vision/*"]),
     ("training", ["kernels/train*", "engine/rfnn/train*", "engine/rfnn/checkpoint.*", "engine/rfnn/curve_bytes.*",
-                  "engine/rfnn/data_set.*", "engine/rfnn/report.*", "engine/rfnn/score.*",
+                  "engine/rfnn/data_set.*", "engine/rfnn/training_report.*", "engine/rfnn/score.*",
                   "engine/config/training.h"]),
     ("precision", ["studies/report/load.*", "studies/metrics/*", "studies/statistics/*"]),
     ("", ["studies/*"]),

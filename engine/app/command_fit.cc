@@ -12,7 +12,7 @@
 #include "engine/core/message.h"
 #include "studies/figures/draw.h"
 #include "studies/fit/fit.h"
-#include "studies/fit/report.h"
+#include "studies/fit/fit_text.h"
 #include "studies/fit/self_check.h"
 
 namespace ed3r {

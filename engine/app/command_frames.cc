@@ -12,9 +12,9 @@
 #include "engine/core/file.h"
 #include "engine/core/sha256.h"
 #include "engine/core/version.h"
-#include "engine/perception/render/data_set.h"
 #include "engine/perception/render/pictures.h"
 #include "engine/perception/render/renderer.h"
+#include "engine/perception/render/training_views.h"
 
 namespace ed3r {
 namespace {

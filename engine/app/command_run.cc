@@ -41,7 +41,7 @@ std::string NetworksText(const std::vector<ShelvedNetwork>& networks) {
 }
 
 // One line on what this session did, with the real-time factor per core.
-void Tell(const SweepSummary& summary, const std::string& dir) {
+void PrintSession(const SweepSummary& summary, const std::string& dir) {
   const RunSummary& flown = summary.flown;
   if (!summary.grown.empty()) fmt::print("grown: {}\n", summary.grown);
   for (const DamagedMission& damage : summary.repaired)
@@ -140,7 +140,7 @@ int Run(const Options& options) {
   if (!options.quiet) {
     if (!summary.flown.interrupted) table = TableOf(sweep.dir);
     if (!summary.flown.interrupted) fmt::print("{}\n", table);
-    Tell(summary, sweep.dir);
+    PrintSession(summary, sweep.dir);
   }
   if (options.profile) fmt::print("time: {}\n", summary.profile.Text());
   if (summary.flown.interrupted) return ToldEnd();

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/rfnn/report.h"
+#include "engine/rfnn/training_report.h"
 
 namespace ed3r {
 

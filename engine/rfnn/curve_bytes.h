@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/core/sealed_file.h"
-#include "engine/rfnn/report.h"
+#include "engine/rfnn/training_report.h"
 
 namespace ed3r {
 

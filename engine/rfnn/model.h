@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "engine/rfnn/features.h"
-#include "engine/rfnn/report.h"
 #include "engine/rfnn/scaling.h"
+#include "engine/rfnn/training_report.h"
 #include "kernels/aligned_floats.h"
 #include "kernels/dense_net.h"
 #include "kernels/simd_level.h"

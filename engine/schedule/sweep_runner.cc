@@ -103,9 +103,9 @@ MissionTask TaskOf(const SweepPlan& plan, const Inputs& inputs, const NetworkShe
 namespace {
 
 // One run of the stages of a plan.
-class Stages {
+class SweepRun {
  public:
-  Stages(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options)
+  SweepRun(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options)
       : plan_(plan),
         inputs_(inputs),
         options_(options),
@@ -339,7 +339,7 @@ SweepSummary RunSweep(const SweepPlan& plan, const Inputs& inputs, const SweepOp
           fmt::format("{}: stage {}: a precision needs all missions of an arm; fly it without --shard, or in "
                       "rounds as 'ed3r slurm' does",
                       plan.file, stage.name));
-  return Stages(plan, inputs, options).Run();
+  return SweepRun(plan, inputs, options).Run();
 }
 
 }  // namespace ed3r

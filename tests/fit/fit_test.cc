@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "engine/core/check.h"
-#include "studies/fit/report.h"
+#include "studies/fit/fit_text.h"
 
 namespace ed3r {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "engine/core/file.h"
 #include "studies/fit/fit.h"
-#include "studies/fit/report.h"
+#include "studies/fit/fit_text.h"
 #include "tests/flight_logs/complaint.h"
 
 namespace ed3r {

@@ -16,10 +16,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/perception/render/data_set.h"
 #include "engine/perception/render/plume.h"
 #include "engine/perception/render/renderer.h"
 #include "engine/perception/render/shade.h"
+#include "engine/perception/render/training_views.h"
 
 namespace ed3r {
 namespace {

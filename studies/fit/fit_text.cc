@@ -1,4 +1,4 @@
-#include "studies/fit/report.h"
+#include "studies/fit/fit_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>

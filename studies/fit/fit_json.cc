@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "studies/fit/report.h"
+#include "studies/fit/fit_text.h"
 #include "studies/metrics/number_text.h"
 
 namespace ed3r {

@@ -1,4 +1,4 @@
-#include "engine/perception/render/data_set.h"
+#include "engine/perception/render/training_views.h"
 
 #include <algorithm>
 #include <array>

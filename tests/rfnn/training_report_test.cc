@@ -1,4 +1,4 @@
-#include "engine/rfnn/report.h"
+#include "engine/rfnn/training_report.h"
 
 #include <gtest/gtest.h>
 
