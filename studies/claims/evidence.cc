@@ -8,6 +8,7 @@
 
 #include "studies/claims/equivalence.h"
 #include "studies/metrics/definitions.h"
+#include "studies/paper/arms.h"
 
 namespace ed3r {
 namespace {
@@ -107,8 +108,6 @@ bool SizesAgree(const Formula& formula, const ResampledArms& arms, const std::ve
 
 bool IsPlainCell(const Quantity& quantity) { return quantity.kind == Quantity::Kind::kCell; }
 
-bool IsP85(std::string_view arm) { return arm.ends_with("-p85"); }
-
 // The chance of a share at the paper's own value: ours may be one that our missions happen not to show, or that leaves less or
 // more to chance than the paper's. A ratio of sums (wasted energy) keeps what it varies beyond a plain share of missions.
 double SdOfShareAt(double paper_pct, double ours_pct, double sd_of_ours, double missions) {
@@ -122,7 +121,7 @@ double SdOfShareAt(double paper_pct, double ours_pct, double sd_of_ours, double 
 }
 
 double PaperSdOf(const Cell& cell, double paper, double ours, double sd_of_ours) {
-  const double missions = IsP85(cell.arm) ? kPaperMissionsInP85 : kPaperMissions;
+  const double missions = IsP85Name(cell.arm) ? kPaperMissionsInP85 : kPaperMissions;
   const MetricDefinition& metric = MetricDefinitions()[cell.metric];
   if (std::isnan(paper)) return sd_of_ours;
   if (metric.estimate == Estimate::kRate) return SdOfShareAt(paper, kNoNumber, kNoNumber, missions);
@@ -153,7 +152,7 @@ Evidence WeighNumber(const Claim& claim, const Quantity& quantity, const Resampl
   const Uncertainty uncertainty = UncertaintyOf(number);
   evidence.own_sd = uncertainty.sd_missions;
   evidence.paper_sd = uncertainty.sd_missions * arms.ToPaperSize(CellsOf(quantity));
-  if (IsPlainCell(quantity) && !IsP85(quantity.cell.arm)) {
+  if (IsPlainCell(quantity) && !IsP85Name(quantity.cell.arm)) {
     const MetricValue& ours = arms.TableValue(quantity.cell);
     evidence.ours = ours.value, evidence.lo = ours.lo, evidence.hi = ours.hi;
     evidence.exact = MetricDefinitions()[quantity.cell.metric].estimate == Estimate::kMaximum;

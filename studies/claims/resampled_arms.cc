@@ -10,6 +10,7 @@
 
 #include "engine/core/check.h"
 #include "studies/claims/equivalence.h"
+#include "studies/paper/arms.h"
 
 namespace ed3r {
 namespace {

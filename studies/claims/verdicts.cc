@@ -11,6 +11,7 @@
 #include "studies/claims/evidence.h"
 #include "studies/claims/luck.h"
 #include "studies/claims/setup.h"
+#include "studies/paper/arms.h"
 #include "studies/statistics/holm.h"
 
 namespace ed3r {
@@ -365,8 +366,7 @@ int CountReproducedByConstruction(const ClaimStudy& study) {
 
 int CountCalibrated(const ClaimStudy& study) {
   return CountDistinctIf(study, [](const JudgedClaim& judged) {
-    const std::string& arm = judged.claim.strategy;
-    return (arm == "rbs" || arm == "rbs-p85") && judged.claim.kind == "value" &&
+    return ArmOfP85Name(judged.claim.strategy) == "rbs" && judged.claim.kind == "value" &&
            judged.all.verdict == Verdict::kEquivalent;
   });
 }

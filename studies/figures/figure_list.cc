@@ -6,6 +6,8 @@
 #include <set>
 #include <string_view>
 
+#include "studies/paper/arms.h"
+
 namespace ed3r {
 namespace {
 
@@ -18,23 +20,14 @@ struct Group {
 
 struct PaperGroup {
   const char *id, *title, *paper;
-  std::vector<std::string_view> arms;
 };
 
-const std::vector<PaperGroup>& PaperGroups() {
-  static const std::vector<PaperGroup> groups = {
-      {"thresholds", "ED³R under three detection thresholds", "Result 1", {"ed3r-65", "ed3r-75", "ed3r-85"}},
-      {"ablations",
-       "ED³R and its four ablations",
-       "Result 2",
-       {"ed3r-75", "ablation-1", "ablation-2", "ablation-3", "ablation-4"}},
-      {"baselines",
-       "ED³R against its baselines",
-       "Result 3, its table as figures",
-       {"ed3r-75", "ecd2r", "rbs"}},
-  };
-  return groups;
-}
+// Of the paper's comparisons (paper/arms.h).
+constexpr PaperGroup kPaperGroups[] = {
+    {"thresholds", "ED³R under three detection thresholds", "Result 1"},
+    {"ablations", "ED³R and its four ablations", "Result 2"},
+    {"baselines", "ED³R against its baselines", "Result 3, its table as figures"},
+};
 
 bool IsWarmup(std::span<const ArmPlan> plans, const ArmData& arm) {
   const ArmPlan* plan = PlanOf(plans, arm);
@@ -47,7 +40,7 @@ std::string Strategy(std::span<const ArmPlan> plans, const ArmData& arm) {
 }
 
 // The named arms of the last stage that flew two of them at least.
-Indices Together(std::span<const ArmData> arms, const std::vector<std::string_view>& names) {
+Indices Together(std::span<const ArmData> arms, std::span<const std::string_view> names) {
   for (auto last = arms.rbegin(); last != arms.rend(); ++last) {
     Indices found;
     for (const std::string_view name : names)
@@ -74,8 +67,8 @@ void AddRest(std::span<const ArmData> arms, const Indices& rest, std::vector<Gro
 std::vector<Group> MakeGroups(std::span<const ArmData> arms, const Indices& drawn) {
   std::vector<Group> groups;
   std::set<std::size_t> held;
-  for (const PaperGroup& paper : PaperGroups()) {
-    const Indices found = Together(arms, paper.arms);
+  for (const PaperGroup& paper : kPaperGroups) {
+    const Indices found = Together(arms, ArmsOfComparison(paper.id));
     if (found.empty()) continue;
     groups.push_back({paper.id, paper.title, paper.paper, found});
     held.insert(found.begin(), found.end());

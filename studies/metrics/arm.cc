@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "engine/core/check.h"
+#include "studies/paper/arms.h"
 
 namespace ed3r {
 
@@ -29,10 +30,6 @@ ArmData LongestShare(const ArmData& arm, int percent) {
   ArmData longest{.stage = arm.stage, .name = arm.name, .missions = {}};
   for (const std::size_t i : order) longest.missions.push_back(arm.missions[i]);
   return longest;
-}
-
-std::string P85Name(std::string_view arm) {
-  return arm == "ed3r-75" ? "ed3r-p85" : std::string(arm) + "-p85";
 }
 
 ArmData P85Group(const ArmData& arm) {

@@ -41,8 +41,7 @@ inline constexpr int kP85Percent = 15;
 constexpr std::size_t SizeOfP85(std::size_t missions) { return SizeOfShare(missions, kP85Percent); }
 
 // The paper's P85 group: the 15 % longest missions (R30; 128 of 850), under the paper's name for it
-// ("ed3r-p85" for ed3r-75, the threshold that it goes on with, "rbs-p85" for rbs).
+// (paper/arms.h).
 ArmData P85Group(const ArmData& arm);
-std::string P85Name(std::string_view arm);
 
 }  // namespace ed3r

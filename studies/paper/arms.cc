@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/core/check.h"
+
 namespace ed3r {
 namespace {
 
@@ -19,6 +21,16 @@ constexpr PaperArm kArms[] = {
     {.name = "rbs", .label = "RBS", .strategy = "rbs"},
 };
 
+constexpr std::string_view kThresholds[] = {"ed3r-65", "ed3r-75", "ed3r-85"};
+constexpr std::string_view kAblations[] = {"ed3r-75", "ablation-1", "ablation-2", "ablation-3", "ablation-4"};
+constexpr std::string_view kBaselines[] = {"ed3r-75", "ecd2r", "rbs"};
+constexpr PaperComparison kComparisons[] = {
+    {"thresholds", kThresholds}, {"ablations", kAblations}, {"baselines", kBaselines}};
+
+constexpr std::string_view kP85Ending = "-p85";
+constexpr std::string_view kP85OfEd3r = "ed3r-p85";
+constexpr std::string_view kEd3rOfP85 = "ed3r-75";
+
 template <class Fits>
 const PaperArm* FindArm(const Fits& fits) {
   const auto found = std::find_if(std::begin(kArms), std::end(kArms), fits);
@@ -31,6 +43,28 @@ std::span<const PaperArm> PaperArms() { return kArms; }
 
 const PaperArm* FindPaperArm(std::string_view name) {
   return FindArm([&](const PaperArm& arm) { return arm.name == name; });
+}
+
+std::span<const PaperComparison> PaperComparisons() { return kComparisons; }
+
+std::span<const std::string_view> ArmsOfComparison(std::string_view id) {
+  for (const PaperComparison& comparison : kComparisons)
+    if (comparison.id == id) return comparison.arms;
+  ED3R_CHECK(false, std::string(id));
+  return {};
+}
+
+std::string P85Name(std::string_view arm) {
+  return arm == kEd3rOfP85 ? std::string(kP85OfEd3r) : std::string(arm) + std::string(kP85Ending);
+}
+
+bool IsP85Name(std::string_view name) {
+  return name.size() > kP85Ending.size() && name.ends_with(kP85Ending);
+}
+
+std::string_view ArmOfP85Name(std::string_view name) {
+  if (name == kP85OfEd3r) return kEd3rOfP85;
+  return IsP85Name(name) ? name.substr(0, name.size() - kP85Ending.size()) : name;
 }
 
 const PaperArm* FindPaperWarmup(std::string_view strategy) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "studies/metrics/arm.h"
+#include "studies/paper/arms.h"
 #include "studies/tables/data_files.h"
 #include "studies/tables/names.h"
 
@@ -10,10 +11,10 @@ namespace ed3r {
 namespace {
 
 struct Description {
-  const char *id, *title;
+  const char *id, *title;  // id: of the paper's comparison (paper/arms.h)
   bool arms_down;
   bool p85;  // the groups of its arms follow them
-  std::vector<std::string_view> arms, metrics;
+  std::vector<std::string_view> metrics;
 };
 
 const std::vector<Description>& Descriptions() {
@@ -22,7 +23,6 @@ const std::vector<Description>& Descriptions() {
        "ED³R at three detection thresholds (paper, Result 1)",
        false,
        false,
-       {"ed3r-65", "ed3r-75", "ed3r-85"},
        {"total_energy_kj", "movement_energy_kj", "computation_energy_kj", "transmission_energy_kj",
         "sensing_energy_kj", "mscs_pct", "msr_pct", "wer_pct", "fp_pct", "bd_pct", "er_pct",
         "lf_accuracy_pct", "or_pct", "model_full_pct", "model_quant_pct", "duration_mean_min",
@@ -31,7 +31,6 @@ const std::vector<Description>& Descriptions() {
        "ED³R and its ablations (paper, Result 2)",
        false,
        false,
-       {"ed3r-75", "ablation-1", "ablation-2", "ablation-3", "ablation-4"},
        {"total_energy_kj", "movement_energy_kj", "computation_energy_kj", "transmission_energy_kj",
         "sensing_energy_kj", "mscs_pct", "msr_pct", "wer_pct", "fp_pct", "bd_pct", "lf_accuracy_pct",
         "or_pct", "model_full_pct", "model_quant_pct", "duration_mean_min"}},
@@ -39,7 +38,6 @@ const std::vector<Description>& Descriptions() {
        "ED³R against two baselines, all missions and the longest 15 % (P85) (paper, Result 3)",
        true,
        true,
-       {"ed3r-75", "ecd2r", "rbs"},
        {"total_energy_kj", "mscs_pct", "msr_pct", "wer_pct", "lf_accuracy_pct", "duration_mean_min"}},
   };
   return all;
@@ -76,7 +74,7 @@ const ArmMetrics* Find(std::span<const ArmMetrics> arms, std::string_view stage,
 }
 
 // The named arms of the last stage that holds two of them at least, in the order of `names`.
-Arms FindTogether(std::span<const ArmMetrics> arms, const std::vector<std::string_view>& names) {
+Arms FindTogether(std::span<const ArmMetrics> arms, std::span<const std::string_view> names) {
   for (auto last = arms.rbegin(); last != arms.rend(); ++last) {
     Arms found;
     for (const std::string_view name : names)
@@ -111,7 +109,7 @@ std::vector<StudyTable> MakeStudyTables(std::span<const ArmMetrics> arms, std::s
   std::vector<StudyTable> tables;
   if (!all.arms.empty()) tables.push_back(std::move(all));
   for (const Description& description : Descriptions())
-    if (const Arms found = FindTogether(arms, description.arms); !found.empty())
+    if (const Arms found = FindTogether(arms, ArmsOfComparison(description.id)); !found.empty())
       tables.push_back(MakeTable(description, found, p85));
   return tables;
 }
