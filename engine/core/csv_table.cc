@@ -24,9 +24,10 @@ std::string_view Trimmed(std::string_view text) {
   return text;
 }
 
-// Calls action(begin, end) for each comma-separated cell; commas between quotes belong to the cell.
+// Calls action(begin, end) for each comma-separated cell; commas between quotes belong to the cell. False: a quote is not
+// closed.
 template <class Action>
-void ForEachCell(std::string_view line, Action action) {
+bool ForEachCell(std::string_view line, Action action) {
   std::size_t begin = 0;
   bool quoted = false;
   for (std::size_t i = 0; i <= line.size(); ++i) {
@@ -35,6 +36,18 @@ void ForEachCell(std::string_view line, Action action) {
     action(begin, i);
     begin = i + 1;
   }
+  return !quoted;
+}
+
+// What a cell that is no number may have been meant as, in brackets, or "".
+std::string Hint(std::string_view cell) {
+  constexpr std::string_view kDigits = "0123456789";
+  const std::size_t comma = cell.find(',');
+  if (comma != std::string_view::npos && cell.find_first_not_of("0123456789+-,") == std::string_view::npos)
+    return " (decimal or thousands commas? a decimal point is wanted, or semicolons between the columns)";
+  if (cell.find(':') != std::string_view::npos && cell.find_first_of(kDigits) == 0)
+    return " (a date or a time of day? seconds are wanted)";
+  return "";
 }
 
 }  // namespace
@@ -91,9 +104,12 @@ void CsvTable::ReadHeader(std::string_view line, int number) {
 
 void CsvTable::ReadRow(std::size_t begin, std::string_view line, int number) {
   const std::size_t before = cells_.size();
-  ForEachCell(line, [&](std::size_t from, std::size_t to) {
+  const bool closed = ForEachCell(line, [&](std::size_t from, std::size_t to) {
     cells_.push_back({static_cast<std::uint32_t>(begin + from), static_cast<std::uint32_t>(begin + to)});
   });
+  if (!closed)
+    throw UserError(fmt::format(
+        "{}:{}:1: a quotation mark is not closed; cells over several lines are not read", path_, number));
   const std::size_t found = cells_.size() - before;
   if (found != columns_.size())
     throw UserError(fmt::format("{}:{}:{}: {} cells, but the header names {} columns", path_, number,
@@ -133,7 +149,7 @@ double CsvTable::Number(std::size_t row, std::size_t column, double min, double 
   const char* begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
   const auto [stop, error] = std::from_chars(begin, end, value);
   if (cell.empty() || error != std::errc() || stop != end || !std::isfinite(value))
-    throw UserError(fmt::format("{}'{}' is not a number", Where(row, column), cell));
+    throw UserError(fmt::format("{}'{}' is not a number{}", Where(row, column), cell, Hint(cell)));
   if (value < min || value > max)
     throw UserError(
         fmt::format("{}{} is out of range; allowed: {:g} .. {:g}", Where(row, column), cell, min, max));

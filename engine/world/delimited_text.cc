@@ -55,7 +55,12 @@ char DelimiterOf(std::string_view header, const std::string& path) {
 CommaSeparated ToCommaSeparated(const std::string& path, std::string text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw UserError(fmt::format("{}: UTF-16 text; save it as UTF-8", path));
+  if (text.find('\0') != std::string::npos)
+    throw UserError(fmt::format("{}: is no text; allowed: a table with commas, semicolons or tabs", path));
   if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
+  const std::size_t first = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  if (std::string_view(text).substr(first).starts_with("sep="))
+    text[first] = '#';  // a line of spreadsheets alone
   const Line header = FindHeader(text);
   const char delimiter =
       DelimiterOf(std::string_view(text).substr(header.begin, header.end - header.begin), path);

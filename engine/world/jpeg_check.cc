@@ -29,8 +29,8 @@ void OnMessage(j_common_ptr jpeg, int level) {
   if (level < 0) Leave(jpeg);  // a warning; the others are traces
 }
 
-// Nothing here may have a destructor: libjpeg's errors leave by a long jump.
-bool Decodes(std::string_view bytes, Complaints& complaints) {
+// 0: complaints.first says why. Nothing here may have a destructor: libjpeg's errors leave by a long jump.
+int Channels(std::string_view bytes, Complaints& complaints) {
   jpeg_decompress_struct jpeg;
   jpeg.err = jpeg_std_error(&complaints.base);
   complaints.base.error_exit = Leave;
@@ -38,7 +38,7 @@ bool Decodes(std::string_view bytes, Complaints& complaints) {
   jpeg_create_decompress(&jpeg);
   if (setjmp(complaints.out) != 0) {
     jpeg_destroy_decompress(&jpeg);
-    return false;
+    return 0;
   }
   jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
   jpeg_read_header(&jpeg, TRUE);
@@ -46,17 +46,19 @@ bool Decodes(std::string_view bytes, Complaints& complaints) {
   const JDIMENSION row_bytes = jpeg.output_width * static_cast<JDIMENSION>(jpeg.output_components);
   JSAMPARRAY row = jpeg.mem->alloc_sarray(reinterpret_cast<j_common_ptr>(&jpeg), JPOOL_IMAGE, row_bytes, 1);
   while (jpeg.output_scanline < jpeg.output_height) jpeg_read_scanlines(&jpeg, row, 1);
+  const int channels = jpeg.num_components;
   jpeg_finish_decompress(&jpeg);
   jpeg_destroy_decompress(&jpeg);
-  return true;
+  return channels;
 }
 
 }  // namespace
 
-void CheckJpeg(std::string_view bytes, const std::string& name) {
+int CheckJpeg(std::string_view bytes, const std::string& name) {
   Complaints complaints;
-  if (!Decodes(bytes, complaints))
-    throw UserError(fmt::format("{}: is damaged or cut short: {}", name, complaints.first));
+  const int channels = Channels(bytes, complaints);
+  if (channels == 0) throw UserError(fmt::format("{}: is damaged or cut short: {}", name, complaints.first));
+  return channels;
 }
 
 }  // namespace ed3r

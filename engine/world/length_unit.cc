@@ -24,7 +24,7 @@ struct Synonym {
   std::string_view word, name;
 };
 
-constexpr std::array<Synonym, 26> kSynonyms = {{{"metre", "m"},
+constexpr std::array<Synonym, 30> kSynonyms = {{{"metre", "m"},
                                                 {"meter", "m"},
                                                 {"metres", "m"},
                                                 {"meters", "m"},
@@ -35,6 +35,10 @@ constexpr std::array<Synonym, 26> kSynonyms = {{{"metre", "m"},
                                                 {"intl foot", "ft"},
                                                 {"international foot", "ft"},
                                                 {"international feet", "ft"},
+                                                {"foot international", "ft"},
+                                                {"feet international", "ft"},
+                                                {"foot us survey", "us-ft"},
+                                                {"feet us survey", "us-ft"},
                                                 {"us survey foot", "us-ft"},
                                                 {"us survey feet", "us-ft"},
                                                 {"survey foot", "us-ft"},

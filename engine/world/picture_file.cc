@@ -10,6 +10,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/world/exif_orientation.h"
 #include "engine/world/jpeg_check.h"
 #include "engine/world/png_pixels.h"
 #include "engine/world/quiet_opencv.h"
@@ -127,16 +128,18 @@ Picture PngPicture(const std::string& bytes, const std::string& path) {
                     path));
   Picture picture;
   const bool through = OverBlack(png.bgra, picture.bgr);
+  picture.bgr = Turned(picture.bgr, png.orientation);
   std::vector<std::string> notes;
   if (png.grey) notes.push_back("grey");
   if (png.sixteen_bits) notes.push_back("upper 8 of 16 bits");
   if (through) notes.push_back("see-through parts as black");
+  if (png.orientation != 1) notes.push_back("turned as its camera says");
   picture.note = fmt::format("{}", fmt::join(notes, ", "));
   return picture;
 }
 
 Picture JpegPicture(const std::string& bytes, const std::string& path) {
-  CheckJpeg(bytes, path);
+  const int channels = CheckJpeg(bytes, path);
   QuietOpenCv();
   Picture picture;
   try {
@@ -146,6 +149,7 @@ Picture JpegPicture(const std::string& bytes, const std::string& path) {
     picture.bgr.release();
   }
   if (picture.bgr.empty()) throw UserError(fmt::format("{}: is no picture that can be read", path));
+  picture.note = channels == 1 ? "grey" : channels == 4 ? "from four inks" : "";
   return picture;
 }
 

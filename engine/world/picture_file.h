@@ -24,7 +24,7 @@ struct Picture {
 };
 
 // A picture as colours. Grey is red = green = blue; of 16-bit colours the upper 8 bits are taken; what is see-through lies
-// over black; a JPEG is turned as its camera says. Throws UserError as above, for one that is damaged or cut short, and for
+// over black; both are turned as their camera says. Throws UserError as above, for one that is damaged or cut short, and for
 // one channel of 16 bits: a thermal picture or raw counts, which are no colours.
 Picture ReadPicture(const std::string& path);
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/core/check.h"
+#include "engine/world/exif_orientation.h"
 
 namespace ed3r {
 namespace {
@@ -63,8 +64,16 @@ class Reader {
   bool Rows(png_bytepp rows) {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     png_read_image(png_, rows);
-    png_read_end(png_, nullptr);
+    png_read_end(png_, info_);
     return true;
+  }
+
+  // After Rows: the chunk may stand behind the pixels.
+  int Orientation() const {
+    png_bytep exif = nullptr;
+    png_uint_32 length = 0;
+    if (png_get_eXIf_1(png_, info_, &length, &exif) == 0 || exif == nullptr) return 1;
+    return ExifOrientation({reinterpret_cast<const char*>(exif), length});
   }
 
   cv::Size Size() const {
@@ -94,6 +103,7 @@ PngPixels DecodePng(std::string_view bytes, const std::string& name) {
   rows.reserve(static_cast<std::size_t>(pixels.bgra.rows));
   for (int y = 0; y < pixels.bgra.rows; ++y) rows.push_back(pixels.bgra.ptr(y));
   if (!reader.Rows(rows.data())) refuse();
+  pixels.orientation = reader.Orientation();
   return pixels;
 }
 

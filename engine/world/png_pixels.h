@@ -12,6 +12,7 @@ struct PngPixels {
   cv::Mat bgra;               // 8 bits a channel, blue first
   bool sixteen_bits = false;  // of which the upper eight are here
   bool grey = false;
+  int orientation = 1;  // of the camera, by its eXIf chunk (exif_orientation.h); not applied here
 };
 
 // `bytes` have passed ReadPictureSides; `name` begins messages. Throws UserError for a file that is damaged or cut short.

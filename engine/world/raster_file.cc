@@ -139,19 +139,43 @@ void RasterFile::CheckBlocks() const {
                     columns_, rows_, block_columns, block_rows, kMaxWindowCells));
 }
 
-// GDAL takes a word among the heights of a text grid for 0.
+// GDAL takes a word among the heights of a text grid for 0, and the numbers as they come: where a row has not as many as
+// the header says, all rows after it would be shifted.
 void RasterFile::CheckWords(const std::string& file) const {
   const std::string text = ReadFile(file, kMaxModelBytes);
   constexpr std::string_view kSpace = " \t\r\n";
-  for (std::size_t begin = text.find_first_not_of(kSpace); begin != std::string::npos;) {
+  std::size_t heights = 0, in_line = 0, in_first_line = 0, line = 1, begin = 0;
+  bool after_name = false, alike = true;
+  const auto end_line = [&] {
+    if (in_line != 0 && in_first_line == 0) in_first_line = in_line;
+    alike = alike && (in_line == 0 || in_line == in_first_line);
+    heights += in_line;
+    in_line = 0;
+  };
+  while (begin < text.size()) {
+    if (text[begin] == '\n') ++line, end_line();
+    if (kSpace.find(text[begin]) != std::string_view::npos) {
+      ++begin;
+      continue;
+    }
     const std::size_t end = std::min(text.find_first_of(kSpace, begin), text.size());
     const std::string_view word = std::string_view(text).substr(begin, end - begin);
-    if (!IsGridNumber(word) && !IsHeaderName(word))
-      Fail(fmt::format("line {}: '{}' is no number",
-                       1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(begin), '\n'),
-                       word));
-    begin = text.find_first_not_of(kSpace, end);
+    const bool name = IsHeaderName(word);
+    if (!name && !IsGridNumber(word)) Fail(fmt::format("line {}: '{}' is no number", line, word));
+    in_line += !name && !after_name;
+    after_name = name;
+    begin = end;
   }
+  end_line();
+  const std::size_t columns = static_cast<std::size_t>(columns_), cells = columns * rows_;
+  const bool in_rows =
+      !alike || in_first_line == cells || (in_first_line > 0 && columns % in_first_line == 0);
+  if (heights == cells && in_rows) return;
+  Fail(
+      fmt::format("{} heights{}, but its header says ncols {} and nrows {}, which makes {}; correct the "
+                  "header, or bring the whole "
+                  "file",
+                  heights, alike ? fmt::format(", {} a line", in_first_line) : "", columns_, rows_, cells));
 }
 
 void RasterFile::ReadCoding() {
@@ -176,6 +200,7 @@ std::vector<double> RasterFile::Read(const CellWindow& window) const {
   CheckMarks(window, height);
   for (double& h : height) h = (scale_ * h + offset_) * units_.height.m;
   CheckHeights(window, height);
+  CheckGap(window, height);
   return height;
 }
 
@@ -251,6 +276,37 @@ void RasterFile::CheckHeights(const CellWindow& window, const std::vector<double
                        PlaceOf(window, i), kLowestM, kHighestM));
 }
 
+// Ground has heights in between: what lies a cliff away from all of them is a hole or a spike that the file does not tell
+// of, whatever number stands in it.
+void RasterFile::CheckGap(const CellWindow& window, const std::vector<double>& heights_m) const {
+  constexpr double kBinM = 10.0, kCliffM = 150.0,
+                   kSteepest = 3.0;  // a cell may be so much higher than the next
+  const auto [lowest, highest] = std::minmax_element(heights_m.begin(), heights_m.end());
+  const double low_m = *lowest, gap_m = kCliffM + kSteepest * std::max(cell_x_m_, cell_y_m_);
+  const auto bin = [&](double height_m) { return static_cast<std::size_t>((height_m - low_m) / kBinM); };
+  std::vector<std::size_t> counts(bin(*highest) + 1, 0);
+  for (const double height_m : heights_m) ++counts[bin(height_m)];
+  std::size_t below = 0, last = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0) continue;
+    if (static_cast<double>(i - last) * kBinM > gap_m + kBinM) {
+      const bool holes = 2 * below < heights_m.size();
+      const auto odd = std::find_if(heights_m.begin(), heights_m.end(),
+                                    [&](double height_m) { return (bin(height_m) < i) == holes; });
+      Fail(fmt::format(
+          "{} of the {} cells that the area needs lie more than {:.0f} m {} all others, the first, of {:.6g} "
+          "m, at {}: "
+          "holes or spikes that it does not declare; mend them (gdal_fillnodata.py) or move or shrink "
+          "offset_m and "
+          "extent_m",
+          holes ? below : heights_m.size() - below, heights_m.size(), gap_m, holes ? "below" : "above", *odd,
+          PlaceOf(window, static_cast<std::size_t>(odd - heights_m.begin()))));
+    }
+    below += counts[i];
+    last = i;
+  }
+}
+
 std::string RasterFile::PlaceOf(const CellWindow& window, std::size_t index) const {
   const int column = window.first_column + static_cast<int>(index % static_cast<std::size_t>(window.columns));
   const int row = window.first_row + static_cast<int>(index / static_cast<std::size_t>(window.columns));
@@ -280,6 +336,8 @@ std::string RasterFile::Note() const {
   if (units_.height.m != 1.0) add(fmt::format("heights in {}", units_.height.name));
   if (scale_ != 1.0 || offset_ != 0.0)
     add(fmt::format("heights are {:g} times what is stored, and {:g}", scale_, offset_));
+  if (band_->GetRasterDataType() == GDT_Byte)
+    add("heights of 8 bits, 0 .. 255 (a hillshade or another picture would look so, and is none)");
   return note;
 }
 

@@ -1,6 +1,6 @@
 // A raster of heights as its file has it, read through GDAL into metres: linear unit, vertical unit, scale and offset
-// are applied; cells that a mask, an alpha band or a NODATA value leaves out, or that hold a usual mark for holes, are
-// refused where they are needed.
+// are applied; cells that a mask, an alpha band or a NODATA value leaves out, or that hold a usual mark for holes, or
+// lie far from all other heights, are refused where they are needed.
 //
 // Only files of the disk are opened (no pipes, archives, networks), and GDAL prints nothing.
 // Errors: UserError at the world file's key. Threads: an object belongs to one thread.
@@ -60,6 +60,7 @@ class RasterFile {
                   const std::vector<unsigned char>& valid) const;
   void CheckMarks(const CellWindow& window, const std::vector<double>& raw) const;
   void CheckHeights(const CellWindow& window, const std::vector<double>& height_m) const;
+  void CheckGap(const CellWindow& window, const std::vector<double>& height_m) const;
   std::string PlaceOf(const CellWindow& window, std::size_t index) const;
 
   const GridTerrainSpec& spec_;

@@ -154,12 +154,30 @@ class Reference {
     CheckSame(told, spec_.height_unit, "heights", "height_unit");
     if (told) return *told;
     if (spec_.height_unit) return *spec_.height_unit;
+    if (const std::string word = FeetWord(dataset_.GetRasterBand(1)->GetDescription()); !word.empty())
+      Fail(
+          fmt::format("its band is called '{}', and nothing else tells the unit of its heights; add "
+                      "'height_unit: ft', 'us-ft' or "
+                      "'m' to terrain.grid",
+                      word));
     if (length.m != 1.0)
       Fail(fmt::format(
           "its lengths are in {0}, and nothing tells the unit of its heights; add 'height_unit: {0}' or "
           "'height_unit: m' to terrain.grid",
           length.name));
     return {1.0, "m"};
+  }
+
+  // A band's name that speaks of feet, or "". Nothing is concluded from it: somebody may have converted the heights.
+  static std::string FeetWord(const char* description) {
+    const std::string name = description == nullptr ? "" : description;
+    char** words = CSLTokenizeString2(LowerCase(name).c_str(), " _-()[],;:/.", 0);
+    bool feet = false;
+    for (int i = 0; words != nullptr && words[i] != nullptr; ++i)
+      for (const char* word : {"ft", "feet", "foot", "usft", "ftus"})
+        feet = feet || std::string_view(words[i]) == word;
+    CSLDestroy(words);
+    return feet ? name : "";
   }
 
   // Of a compound coordinate system, or "".

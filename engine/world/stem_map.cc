@@ -22,16 +22,25 @@ constexpr double kSpotM = 0.01;  // trees nearer than this are at one spot
 
 // Trees as high as a few to two hundred of their diameters; beyond, a unit is not what the column says. Only grown
 // ones: a sapling's diameter at breast height is that of its tip.
-void CheckSlenderness(const StemTable& table, const std::vector<Stem>& measured, const std::string& file) {
+// Returns what is to be said of a stand that may be so, but seldom is.
+std::string CheckSlenderness(const StemTable& table, const std::vector<Stem>& measured,
+                             const std::string& file) {
   constexpr double kGrownM = 5.0, kStoutest = 12.0, kSlenderest = 200.0;
   constexpr std::size_t kFewest = 5;
   std::vector<double> slenderness;
   for (const Stem& stem : measured)
     if (stem.height_m > kGrownM) slenderness.push_back(stem.height_m / (2.0 * stem.trunk_radius_m));
-  if (slenderness.size() < kFewest) return;
+  if (slenderness.size() < kFewest) return "";
   const auto middle = slenderness.begin() + static_cast<std::ptrdiff_t>(slenderness.size() / 2);
   std::nth_element(slenderness.begin(), middle, slenderness.end());
-  if (*middle >= kStoutest && *middle <= kSlenderest) return;
+  constexpr double kSeldomStouter = 25.0, kSeldomSlenderer = 125.0;
+  if (*middle >= kSeldomStouter && *middle <= kSeldomSlenderer) return "";
+  if (*middle >= kStoutest && *middle <= kSlenderest)
+    return fmt::format("stem map: half of its trees are {} than {:.0f} diameters high, with '{}' in {}: {}",
+                       *middle < kSeldomStouter ? "less" : "more", *middle, table.Header(kDiameter),
+                       table.Unit(kDiameter),
+                       *middle < kSeldomStouter ? "stout trees, or girths in place of diameters"
+                                                : "slender trees, or diameters in inches (dbh_in)");
   const bool stout = *middle < kStoutest;
   throw UserError(
       fmt::format("{}: half of its trees are {} than {:.3g} diameters high, with '{}' in {} and '{}' in {}; "
@@ -49,13 +58,14 @@ class StemMapBuilder {
   StemMap Build() {
     if (table_.Rows() == 0) throw UserError(fmt::format("{}: no trees in this stem map", spec_.file));
     for (std::size_t row = 0; row < table_.Rows(); ++row) ReadTree(row);
-    CheckSlenderness(table_, measured_, spec_.file);
+    const std::string slenderness = CheckSlenderness(table_, measured_, spec_.file);
     FindBounds();
     CheckPlaces();
     CheckSpots();
     FindBounds();  // a tree at the edge may have been left out
     MoveToOrigin();
     NoteEstimates();
+    if (!slenderness.empty()) map_.notes.push_back(slenderness);
     return std::move(map_);
   }
 
@@ -67,7 +77,7 @@ class StemMapBuilder {
     const std::optional<double> diameter_m = table_.Number(row, kDiameter);
     stem.height_m = *table_.Number(row, kHeight);
     const std::optional<double> depth_m = table_.CrownDepth(row, stem.height_m);
-    const std::optional<double> radius_m = table_.Number(row, kCrownRadius);
+    const std::optional<double> radius_m = table_.CrownRadius(row, stem.height_m);
     // Where one is missing, estimate_missing is there: the reader refuses otherwise.
     stem.crown_depth_m = depth_m ? *depth_m : CrownDepthM(stem.height_m);
     stem.crown_radius_m = radius_m ? *radius_m : CrownRadiusM(*spec_.estimate_missing, stem.height_m);

@@ -169,6 +169,11 @@ std::optional<double> StemTable::CrownDepth(std::size_t row, double height_m) co
   return base_m ? std::optional(height_m - *base_m) : std::nullopt;
 }
 
+std::optional<double> StemTable::CrownRadius(std::size_t row, double height_m) const {
+  constexpr double kShrubM = 3.0;
+  return Number(row, kCrownRadius, std::min(kMeanings[kCrownRadius].max_m, std::max(height_m, kShrubM)));
+}
+
 std::optional<double> StemTable::Number(std::size_t row, StemQuantity quantity, double max_m) const {
   const Where& where = where_[quantity];
   if (where.column == nullptr) return std::nullopt;

@@ -41,6 +41,9 @@ class StemTable {
   std::optional<double> CrownDepth(std::size_t row,
                                    double height_m) const;  // no deeper than the tree is high
 
+  std::optional<double> CrownRadius(std::size_t row,
+                                    double height_m) const;  // no wider than that, shrubs apart
+
   // Names the columns that are degrees, and the command that makes metres of them.
   [[noreturn]] void FailDegrees(const std::string& longitude, const std::string& latitude) const;
 

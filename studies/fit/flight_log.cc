@@ -1,6 +1,7 @@
 #include "studies/fit/flight_log.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -18,6 +19,7 @@ namespace {
 
 constexpr double kDropOutShare = 0.25;
 constexpr double kSpikeShare = 2.0;
+constexpr double kMostRows = 0.9;
 
 struct Range {
   double min, max;
@@ -288,15 +290,56 @@ void CheckPowerInFlight(const std::vector<LogTable>& tables, const FlightLog& lo
   const bool power = log.format.Has("power_w");
   const std::string meaning = power ? "power_w" : "current_a";
   const std::size_t column = tables[table].Column(log.format.columns.at(meaning), meaning);
+  int negative = 0;
+  double low_w = 0.0, high_w = -std::numeric_limits<double>::infinity();
+  for (const Flight& flight : log.flights)
+    for (const FlightRow& row : flight.rows) {
+      negative += row.power_w < 0.0;
+      low_w = std::min(low_w, row.power_w);
+      high_w = std::max(high_w, row.power_w);
+    }
+  constexpr double kSpread = 0.05;  // less is a mark for "unknown"
+  if (negative > kMostRows * log.rows && high_w - low_w > kSpread * std::abs(low_w))
+    throw UserError(
+        fmt::format("{}{} is negative in {} of {} rows in flight: it looks like one that counts what the "
+                    "battery gives as negative: "
+                    "put 'units: {{{}: {:g}}}' into the format file",
+                    tables[table].Where(first->source_row, column), meaning, negative, log.rows, meaning,
+                    log.format.units.contains(meaning) ? -log.format.units.at(meaning) : -1.0));
   throw UserError(fmt::format("{}power was not measured in {} of {} rows in flight: the first is {}{}",
                               tables[table].Where(first->source_row, column), without, log.rows,
                               tables[table].Cell(first->source_row, column),
                               power ? " W" : fmt::format(" A at {:.3g} W", first->power_w)));
 }
 
+// No row in the air: says what in_flight asks for and what the first row has instead.
+[[noreturn]] void FailOnGround(const LogTable& table, const FlightLog& log) {
+  std::string conditions;
+  for (const auto& [name, condition] : log.format.in_flight)
+    conditions +=
+        fmt::format("{}'{}' {}, and row 1 has '{}'", conditions.empty() ? "" : "; ", name,
+                    condition.words.empty() ? fmt::format("at least {:g}", condition.least)
+                                            : fmt::format("one of: {}", fmt::join(condition.words, ", ")),
+                    table.Cell(0, table.Column(name, "in_flight")));
+  throw UserError(fmt::format(
+      "{}no flight: {} rows are on the ground by the format's in_flight ({}), fewer than {} are not",
+      table.WhereRow(0), log.rows_on_ground, conditions, kMinFlightRows));
+}
+
+// A speed that never changes by a millimetre per second was hardly measured; it may be a hover in a hall, so it is said.
+void NoteDeadSpeed(FlightLog& log) {
+  const double first_mps = log.flights.front().rows.front().airspeed_mps;
+  for (const Flight& flight : log.flights)
+    for (const FlightRow& row : flight.rows)
+      if (std::abs(row.airspeed_mps - first_mps) > 1e-3) return;
+  log.notes.push_back(
+      fmt::format("the speed is {:g} m/s in all {} rows in flight: was it measured?", first_mps, log.rows));
+}
+
 void CheckEnough(const std::vector<LogTable>& tables, const FlightLog& log, LogUse use) {
   const LogTable& last = tables.back();
   const std::string where = last.rows() == 0 ? last.path() + ":1:1: " : last.WhereRow(last.rows() - 1);
+  if (log.flights.empty() && log.rows_on_ground > 0 && !log.format.in_flight.empty()) FailOnGround(last, log);
   if (log.flights.empty())
     throw UserError(fmt::format("{}too few rows: no flight of at least {} rows", where, kMinFlightRows));
   if (use == LogUse::kEvaluate) return;
@@ -344,6 +387,7 @@ FlightLog MakeFlightLog(const std::vector<LogTable>& tables, const LogFormat& fo
   }
   CheckPowerInFlight(tables, log);
   CheckEnough(tables, log, use);
+  NoteDeadSpeed(log);
   log.climb_drift_m = drift_m / static_cast<double>(log.flights.size());
   return log;
 }

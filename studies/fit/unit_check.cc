@@ -177,7 +177,13 @@ class UnitCheck {
                                {"hours", 3600.0}}) {
       const double as_guessed = step * guess.factor;
       if (as_guessed < (guess.factor > 1.0 ? 0.03 : kShortest) || as_guessed > kLongest) continue;
-      Refuse("time_s", fmt::format("the median step is {:g} s", step), Mend("time_s", {guess}));
+      constexpr double kSlowestLogS = 60.0;
+      Refuse("time_s", fmt::format("the median step is {:g} s", step),
+             Mend("time_s", {guess}) +
+                 (step > kLongest && step <= kSlowestLogS
+                      ? fmt::format("; a log of one row in {:g} s is too coarse, {:g} s are allowed", step,
+                                    kLongest)
+                      : ""));
     }
     if (step > kLongest)
       Refuse("time_s", fmt::format("the median step is {:g} s", step),
@@ -283,6 +289,18 @@ class UnitCheck {
   const LogFormat& format_;
 };
 
+// A recorded rate that hardly moves where the altitude does.
+void CheckClimbMoves(const std::string& column, const LogFormat& format, double recorded_mps,
+                     double slope_mps) {
+  constexpr double kDead = 0.05, kSurelyMps = 0.3;  // a barometer's noise has slopes, too
+  if (slope_mps < kSurelyMps || recorded_mps >= kDead * slope_mps) return;
+  throw UserError(
+      fmt::format("{} is {:.2g} m/s on average (root mean square) while the altitude ('{}') changes by "
+                  "{:.2g} m/s: it was not "
+                  "measured; put 'climb_from: altitude' into the format file",
+                  column, recorded_mps, format.columns.at("altitude_m"), slope_mps));
+}
+
 }  // namespace
 
 void CheckUnits(const LogTable& table, const LogFormat& format) { UnitCheck(table, format).Run(); }
@@ -300,10 +318,12 @@ void CheckClimbAgainstAltitude(const std::string& where, const LogFormat& format
     ss += slope_mps[i] * slope_mps[i];
     cs += recorded_mps[i] * slope_mps[i];
   }
-  if (recorded_mps.size() < kLeastRows || std::sqrt(ss / n) < kLeastClimbMps || cc <= 0.0) return;
-  const double correlation = cs / std::sqrt(cc * ss), ratio = cs / cc;
+  if (recorded_mps.size() < kLeastRows || std::sqrt(ss / n) < kLeastClimbMps) return;
   const double factor = format.units.contains("climb_mps") ? format.units.at("climb_mps") : 1.0;
   const std::string column = fmt::format("{}climb_mps ('{}')", where, format.columns.at("climb_mps"));
+  CheckClimbMoves(column, format, std::sqrt(cc / n), std::sqrt(ss / n));
+  if (cc <= 0.0) return;
+  const double correlation = cs / std::sqrt(cc * ss), ratio = cs / cc;
   if (correlation < kAgainst)
     throw UserError(
         fmt::format("{} runs against the altitude ('{}'): correlation {:.2f}; upwards must be positive; it "

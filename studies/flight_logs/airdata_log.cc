@@ -1,11 +1,13 @@
 #include "studies/flight_logs/airdata_log.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <ranges>
 
 #include "engine/core/check.h"
 #include "studies/flight_logs/battery.h"
@@ -23,8 +25,9 @@ std::string Lower(std::string_view text) {
 
 const std::map<std::string, double>& Units() {
   static const std::map<std::string, double> units = {
-      {"millisecond", 1e-3}, {"feet", 0.3048}, {"meters", 1.0},     {"metres", 1.0},    {"m", 1.0},
-      {"mph", 0.44704},      {"m/s", 1.0},     {"km/h", 1.0 / 3.6}, {"kph", 1.0 / 3.6}, {"v", 1.0},
+      {"millisecond", 1e-3}, {"feet", 0.3048}, {"meters", 1.0},     {"metres", 1.0},     {"m", 1.0},
+      {"ft", 0.3048},        {"ft/s", 0.3048}, {"fps", 0.3048},     {"knots", 0.514444}, {"kn", 0.514444},
+      {"mph", 0.44704},      {"m/s", 1.0},     {"km/h", 1.0 / 3.6}, {"kph", 1.0 / 3.6},  {"v", 1.0},
       {"volts", 1.0},        {"a", 1.0},       {"amps", 1.0}};
   return units;
 }
@@ -39,8 +42,9 @@ class UnitColumn {
       const std::string unit = title.substr(name.size() + 1, title.size() - name.size() - 2);
       const auto factor = Units().find(unit);
       if (factor == Units().end())
-        throw UserError(fmt::format("{}:1:1: column '{}': the unit '{}' is not known", table.path(),
-                                    table.columns()[i], unit));
+        throw UserError(fmt::format("{}:1:1: column '{}': the unit '{}' is not known; allowed: {}",
+                                    table.path(), table.columns()[i], unit,
+                                    fmt::join(std::views::keys(Units()), " | ")));
       index_ = i;
       factor_ = sign * factor->second;
       return;

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/core/check.h"
@@ -108,16 +109,22 @@ class Standard {
 
   void ReadRow(std::string_view line) {
     const std::vector<std::string_view> cells = Cells(line, delimiter_);
-    if (cells.size() == columns_) return;
+    const bool open_quote = std::count(line.begin(), line.end(), '"') % 2 != 0;
+    if (cells.size() == columns_ && !open_quote) return;
     if (skip_bad_) {
       text_[begin_] = '#';
       ++bad_;
-    } else if (delimiter_ == ',' && columns_ > 1 && cells.size() > columns_ && cells.size() <= 2 * columns_ &&
-               AllNumbers(cells)) {
+    } else if (open_quote) {
+      Fail(
+          "a quotation mark is not closed; cells over several lines are not read; --skip-bad leaves such "
+          "rows out");
+    } else if (const auto numbers = std::count_if(cells.begin(), cells.end(), IsNumber);
+               delimiter_ == ',' && columns_ > 1 && std::cmp_greater(numbers, columns_) &&
+               cells.size() <= 2 * columns_) {
       Fail(fmt::format(
           "{} numbers, but the header names {} columns: these look like decimal commas between commas; write "
           "decimal points, or separate the columns by semicolons",
-          cells.size(), columns_));
+          numbers, columns_));
     } else {
       Fail(fmt::format("{} cells, but the header names {} column{}; --skip-bad leaves such rows out",
                        cells.size(), columns_, columns_ == 1 ? "" : "s"));

@@ -13,6 +13,14 @@
 
 namespace ed3r {
 
+namespace {
+
+bool IsNoText(char c) {
+  return static_cast<unsigned char>(c) < ' ' && c != '\t' && c != '\n' && c != '\r' && c != '\f';
+}
+
+}  // namespace
+
 LogTable ReadLog(const std::string& path, const LogReading& reading) {
   return ParseLog(path, ReadFile(path, kMaxTextBytes), reading);
 }
@@ -21,7 +29,10 @@ LogTable ParseLog(const std::string& path, std::string bytes, const LogReading& 
   if (ULog::Is(bytes)) return LogTable(ReadPx4Log(path, bytes, reading));
   if (DataFlashLog::Is(bytes)) return LogTable(ReadArduPilotLog(path, bytes, reading));
   constexpr std::size_t kLook = 4096;
-  if (std::string_view(bytes).substr(0, kLook).find('\0') != std::string_view::npos)
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
+    throw UserError(path + ": UTF-16 text; save it as UTF-8");
+  const std::string_view begin = std::string_view(bytes).substr(0, kLook);
+  if (std::any_of(begin.begin(), begin.end(), IsNoText))
     throw UserError(path +
                     ": neither PX4 ULog, ArduPilot DataFlash (.bin) nor CSV; known logs: those three, and "
                     "AirData exports");

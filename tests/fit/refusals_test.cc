@@ -237,6 +237,33 @@ TEST_F(RefusalsTest, BadRowsAreNamedOrCounted) {
          {"--skip-bad would leave out 120 of 600 rows, at most 10 % are allowed"});
 }
 
+TEST_F(RefusalsTest, ACurrentThatCountsDischargeAsNegativeIsNamed) {
+  const std::string log = LogText([](Row& row) { row.current = "-" + row.current; });
+  Expect(Says(log, kCurrentFormat),
+         {"log.csv:2:", "load_a: current_a is negative in 600 of 600 rows in flight",
+          "put 'units: {current_a: -1}' into the format file"});
+  EXPECT_EQ(Says(log, kCurrentFormat + "units: {current_a: -1}\n"), Says(LogText(), kCurrentFormat));
+}
+
+TEST_F(RefusalsTest, AClimbRateThatWasNotMeasuredIsNamed) {
+  Expect(Says(LogText([](Row& row) { row.climb = "0"; })),
+         {"log.csv:2:1: climb_mps ('w') is 0 m/s on average", "while the altitude ('h') changes by",
+          "put 'climb_from: altitude' into the format file"});
+}
+
+TEST_F(RefusalsTest, ASpeedThatNeverChangesIsSaid) {
+  const FitReport report = Fit(LogText([](Row& row) { row.speed = "0"; }));
+  ASSERT_FALSE(report.log.notes.empty());
+  EXPECT_EQ(report.log.notes.back(), "the speed is 0 m/s in all 600 rows in flight: was it measured?");
+}
+
+TEST_F(RefusalsTest, WhyNoRowIsInFlightIsSaid) {
+  Expect(Says(LogText(), FormatText({}, "in_flight: {state: [flying, landing]}\n")),
+         {"log.csv:2:1: no flight: 600 rows are on the ground by the format's in_flight ('state' one of: "
+          "flying, "
+          "landing, and row 1 has 'Landed')"});
+}
+
 TEST_F(RefusalsTest, RowsInFlightAreToldByWords) {
   EXPECT_EQ(Fit(LogText(), FormatText({}, "in_flight: {state: [in air, Landing]}\n")).log.rows_on_ground, 30);
   EXPECT_EQ(Fit(LogText(), FormatText({}, "in_flight: {state: In Air}\n")).log.rows_on_ground, 30);

@@ -37,6 +37,13 @@ TEST(CsvDialectTest, NamesWhatItCannotRead) {
             "x.csv:2:1: 4 numbers, but the header names 2 columns: these look like decimal commas between "
             "commas; write decimal "
             "points, or separate the columns by semicolons");
+  EXPECT_NE(complaint("t,p,state\n0,5,400,25,flying\n")
+                .find("4 numbers, but the header names 3 columns: these look"),
+            std::string::npos);
+  EXPECT_EQ(complaint("t,state\n1,\"flying\n2,flying\n"),
+            "x.csv:2:1: a quotation mark is not closed; cells over several lines are not read; --skip-bad "
+            "leaves such "
+            "rows out");
   EXPECT_EQ(complaint("time power speed\n1 2 3\n"),
             "x.csv:1:1: no comma, semicolon or tab separates the names of the columns");
   EXPECT_EQ(
@@ -50,6 +57,20 @@ TEST(CsvDialectTest, SkipsAndCountsRaggedRows) {
   const LogTable log = ParseLog("x.csv", "t,p\n1,2\n3\n4,5\n6,", {.skip_bad = true});
   EXPECT_EQ(log.rows(), 3u) << "a last line that is cut off after the comma still has its cells";
   EXPECT_EQ(log.bad(), 1);
+  EXPECT_EQ(ParseLog("x.csv", "t,state\n1,\"up\n2,up\n", {.skip_bad = true}).bad(), 1);
+}
+
+TEST(CsvDialectTest, CellsThatAreOtherThanNumbersSayWhatTheyLookLike) {
+  const auto complaint = [](const std::string& cell) {
+    const LogTable log = ParseLog("x.csv", "t,p\n" + cell + ",1\n", {});
+    return Complaint([&] { log.Number(0, 0, 0, 1e9); });
+  };
+  EXPECT_EQ(complaint("\"0,5\""),
+            "x.csv:2:1: t: '0,5' is not a number (decimal or thousands commas? a decimal point is wanted, or "
+            "semicolons between the columns)");
+  EXPECT_EQ(complaint("12:00:01.5"),
+            "x.csv:2:1: t: '12:00:01.5' is not a number (a date or a time of day? seconds are wanted)");
+  EXPECT_EQ(complaint("NaN"), "x.csv:2:1: t: 'NaN' is not a number");
 }
 
 TEST(CsvDialectTest, KnowsWhatIsNoLog) {
@@ -57,6 +78,9 @@ TEST(CsvDialectTest, KnowsWhatIsNoLog) {
               ParseLog("x", std::string("PK\0\0", 4), {});
             }).find("neither PX4 ULog, ArduPilot DataFlash"),
             std::string::npos);
+  EXPECT_EQ(Complaint([] { ParseLog("x.csv", std::string("\xFF\xFEt\0,\0p\0", 8), {}); }),
+            "x.csv: UTF-16 text; save it as UTF-8");
+  EXPECT_NE(Complaint([] { ParseLog("x.gz", "\x1f\x8b\x08\x01", {}); }).find("nor CSV"), std::string::npos);
   EXPECT_EQ(Complaint([] { ParseLog("x.log", "FMT, 128, 89, FMT\n", {}); }),
             "x.log: ArduPilot's log as text; give the .bin file that it was made from");
 }

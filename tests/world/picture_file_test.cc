@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -87,11 +88,48 @@ TEST_F(PictureFile, ColoursComeBackBitForBit) {
   EXPECT_EQ(read.note, "");
 }
 
+// A PNG with an eXIf chunk behind its header, of one entry: the orientation.
+std::string WithOrientation(const std::string& png, int orientation, bool little) {
+  std::string chunk = little ? std::string("II*\0\x8\0\0\0\x1\0\x12\x1\x3\0\x1\0\0\0", 18)
+                             : std::string("MM\0*\0\0\0\x8\0\x1\x1\x12\0\x3\0\0\0\x1", 18);
+  if (!little) chunk += '\0';
+  chunk += static_cast<char>(orientation);
+  chunk += std::string(little ? 7 : 6, '\0');
+  const std::string typed = "eXIf" + chunk;
+  const auto number = [](std::uint32_t value) {
+    std::string bytes;
+    for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(value >> shift);
+    return bytes;
+  };
+  const auto sum = ::crc32(0, reinterpret_cast<const Bytef*>(typed.data()), static_cast<uInt>(typed.size()));
+  constexpr std::size_t kAfterHeader = 33;
+  return png.substr(0, kAfterHeader) + number(static_cast<std::uint32_t>(chunk.size())) + typed +
+         number(static_cast<std::uint32_t>(sum)) + png.substr(kAfterHeader);
+}
+
+// Where the pixel is seen that is stored at (3, 5) of 64 x 48, by each orientation of EXIF.
+TEST_F(PictureFile, APngIsTurnedAsItsCameraSays) {
+  const cv::Mat stored = Pattern<cv::Vec3b>(CV_8UC3);
+  const std::string png = Encoded(".png", stored);
+  const cv::Vec3b pixel = stored.at<cv::Vec3b>(5, 3);
+  const cv::Point seen[] = {{3, 5}, {60, 5}, {60, 42}, {3, 42}, {5, 3}, {42, 3}, {42, 60}, {5, 60}};
+  for (int orientation = 1; orientation <= 8; ++orientation)
+    for (const bool little : {true, false}) {
+      SCOPED_TRACE(orientation);
+      const Picture picture = Read(WithOrientation(png, orientation, little));
+      EXPECT_EQ(picture.note, orientation == 1 ? "" : "turned as its camera says");
+      EXPECT_EQ(picture.bgr.size(), orientation < 5 ? cv::Size(64, 48) : cv::Size(48, 64));
+      EXPECT_EQ(picture.bgr.at<cv::Vec3b>(seen[orientation - 1]), pixel);
+    }
+  for (const int none : {0, 9, 255}) EXPECT_TRUE(Same(Read(WithOrientation(png, none, true)).bgr, stored));
+}
+
 TEST_F(PictureFile, GreyIsThreeEqualColours) {
   const cv::Mat grey = Pattern<cv::Vec<unsigned char, 1>>(CV_8UC1);
   const Picture picture = Read(Encoded(".png", grey));
   EXPECT_EQ(picture.note, "grey");
   EXPECT_EQ(picture.bgr.at<cv::Vec3b>(7, 9), cv::Vec3b::all(grey.at<unsigned char>(7, 9)));
+  EXPECT_EQ(Read(Encoded(".jpg", grey)).note, "grey");
 }
 
 TEST_F(PictureFile, OfSixteenBitsTheUpperEightAreTaken) {

@@ -1,4 +1,5 @@
 // What a raster says of its units, scale, masks and projection is applied, or refused with the command that mends it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -267,6 +268,53 @@ TEST_F(RasterTest, PicturesAreNoHeights) {
   EXPECT_EQ(Message(raster), "'g.tif': complex numbers; allowed: heights");
 }
 
+// -1, -500, 4000: whatever a program writes where it knows nothing.
+TEST_F(RasterTest, ACellFarFromAllOthersIsAHoleOrASpike) {
+  TestRaster raster;
+  for (const double odd : {-1.0, -500.0, 4000.0}) {
+    raster.stored = [odd](int column, int row) {
+      return column == 4 && row == 3 ? odd : 300.0 + Slope(column, row);
+    };
+    EXPECT_EQ(
+        Message(raster),
+        fmt::format(
+            "'g.tif': 1 of the 99 cells that the area needs lie more than 180 m {} all others, the "
+            "first, of {:g} m, at [40, 30] m from the south-west cell: holes or spikes that it does not "
+            "declare; mend them (gdal_fillnodata.py) or move or shrink offset_m and extent_m",
+            odd < 0.0 ? "below" : "above", odd));
+  }
+  raster.stored = [](int column, int row) { return 20.0 + 12.0 * column + 3.0 * row; };  // steep, but ground
+  EXPECT_EQ(Message(raster), "no error");
+}
+
+TEST_F(RasterTest, ABandThatIsCalledInFeetIsAskedFor) {
+  TestRaster raster;
+  raster.stored = Slope;
+  for (const char* name : {"Elevation (ft)", "DEM_feet"}) {
+    WriteRaster(folder.Path("g.tif"), raster);
+    GDALDataset* dataset = GDALDataset::Open(folder.Path("g.tif").c_str(), GDAL_OF_UPDATE);
+    ASSERT_NE(dataset, nullptr);
+    dataset->GetRasterBand(1)->SetDescription(name);
+    GDALClose(dataset);
+    EXPECT_EQ(
+        Message("    file: g.tif\n"),
+        fmt::format("'g.tif': its band is called '{}', and nothing else tells the unit of its heights; add "
+                    "'height_unit: ft', 'us-ft' or 'm' to terrain.grid",
+                    name));
+    ExpectSlope(*Load("    file: g.tif\n    height_unit: ft\n"), 10.0, kFootM);
+  }
+}
+
+TEST_F(RasterTest, HeightsOfEightBitsAreSaid) {
+  TestRaster raster;
+  raster.type = GDT_Byte;
+  raster.stored = Slope;
+  const auto scene = Load(raster);
+  ExpectSlope(*scene, 10.0, 1.0);
+  ASSERT_EQ(scene->Notes().size(), 1u);
+  EXPECT_NE(scene->Notes().front().find("heights of 8 bits"), std::string::npos);
+}
+
 class TextGridTest : public RasterTest {
  protected:
   TextGridTest() { folder.WriteGrid("g.asc", 40, 40, 30.0, Slope); }
@@ -281,6 +329,37 @@ class TextGridTest : public RasterTest {
   }
   const std::string kGrid = "    file: g.asc\n";
 };
+
+// Was sheared without a word: each row began where the one before had ended.
+TEST_F(TextGridTest, RowsAreAsLongAsTheHeaderSays) {
+  const auto text = [](int ncols, int nrows, const std::string& end, const std::string& more = "") {
+    std::string grid =
+        fmt::format("ncols {}\nnrows {}\nxllcorner 0\nyllcorner 0\ncellsize 10\n", ncols, nrows);
+    for (int row = 11; row >= 0; --row)
+      for (int column = 0; column < 16; ++column)
+        grid += fmt::format("{}{}", Slope(column, row), column == 15 ? "\n" : end);
+    return grid + more;
+  };
+  const auto says = [&](const std::string& grid) {
+    folder.Write("g.asc", grid);
+    return Message(kGrid);
+  };
+  EXPECT_EQ(says(text(16, 12, " ")), "no error");
+  EXPECT_EQ(says(text(16, 12, "\n")), "no error");  // one height a line
+  ExpectSlope(*Load(kGrid), 10.0, 1.0);
+  const std::string mend = "; correct the header, or bring the whole file";
+  EXPECT_EQ(
+      says(text(15, 12, " ")),
+      "'g.asc': 192 heights, 16 a line, but its header says ncols 15 and nrows 12, which makes 180" + mend);
+  EXPECT_EQ(
+      says(text(17, 12, " ")),
+      "'g.asc': 192 heights, 16 a line, but its header says ncols 17 and nrows 12, which makes 204" + mend);
+  EXPECT_EQ(
+      says(text(12, 16, " ")),
+      "'g.asc': 192 heights, 16 a line, but its header says ncols 12 and nrows 16, which makes 192" + mend);
+  EXPECT_EQ(says(text(16, 12, " ", "1 2 3\n")),
+            "'g.asc': 195 heights, but its header says ncols 16 and nrows 12, which makes 192" + mend);
+}
 
 TEST_F(TextGridTest, ItsPrjTellsTheUnits) {
   ExpectSlope(*Load(kGrid), 30.0, 1.0);

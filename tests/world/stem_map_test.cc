@@ -75,6 +75,8 @@ TEST_F(StemMapTest, TablesAsProgramsWriteThem) {
       "2\n"
       "\"2\",63,57,30,21.5,9,2.5\n");  // write.csv of R
   ExpectTrees(
+      "sep=;\nx_m;y_m;dbh_cm;height_m;crown_depth_m;crown_radius_m\n3;7;20;15;8;2\n63;57;30;21,5;9;2,5\n");
+  ExpectTrees(
       ",x_m,y_m,dbh_cm,height_m,crown_depth_m,crown_radius_m\n0,3,7,20,15,8,2\n1,63,57,30,21.5,9,2.5\n");
 }
 
@@ -85,6 +87,10 @@ TEST_F(StemMapTest, ComplaintsNameThePlaceInTheFileAsItIs) {
   EXPECT_EQ(Message("x_m y_m dbh_cm height_m crown_depth_m crown_radius_m\n3 7 20 15 8 2\n"),
             "stems.csv: its cells are apart by spaces; allowed: commas, semicolons or tabs");
   EXPECT_EQ(Message(std::string("\xFF\xFE\x78\x00", 4)), "stems.csv: UTF-16 text; save it as UTF-8");
+  EXPECT_EQ(Message(std::string("PK\3\4\0\0", 6)),
+            "stems.csv: is no text; allowed: a table with commas, semicolons or tabs");
+  EXPECT_EQ(Message("id," + kHeader + "\"a,3,7,20,15,8,2\nb,63,57,30,21.5,9,2.5\n"),
+            "stems.csv:2:1: a quotation mark is not closed; cells over several lines are not read");
 }
 
 TEST_F(StemMapTest, ColumnsByOtherNamesAndInOtherUnits) {
@@ -131,6 +137,30 @@ TEST_F(StemMapTest, UnitsThatCannotBeAreNamed) {
             "diameters in mm?: another unit (dbh_cm | dbh_mm | dbh_m | dbh_in, height_m | height_ft in "
             "forest.stem_map.columns)");
   EXPECT_NE(Message(stand(25, 80)).find("heights in feet, or diameters in inches or m?"), std::string::npos);
+}
+
+// Inches in a column of cm, and girths: they may be so, so it is said.
+TEST_F(StemMapTest, TreesThatAreSeldomSoSlenderAreSaid) {
+  const auto notes = [this](double dbh, double height) {
+    std::string text = kHeader;
+    for (int i = 0; i < 8; ++i) text += fmt::format("{},{},{},{},4,2\n", 10 * i, 7 * i, dbh, height);
+    return Read(text).notes;
+  };
+  EXPECT_TRUE(notes(30, 20).empty());
+  EXPECT_EQ(notes(30 / 2.54, 20),
+            std::vector<std::string>{
+                "stem map: half of its trees are more than 169 diameters high, with 'dbh_cm' in "
+                "cm: slender trees, or diameters in inches (dbh_in)"});
+  EXPECT_EQ(notes(30 * std::numbers::pi, 20),
+            std::vector<std::string>{
+                "stem map: half of its trees are less than 21 diameters high, with 'dbh_cm' in "
+                "cm: stout trees, or girths in place of diameters"});
+}
+
+TEST_F(StemMapTest, CrownsAreNoWiderThanTheirTreesAreHigh) {
+  EXPECT_EQ(Message(kHeader + "3,7,20,15,8,2\n63,57,30,21.5,9,25\n"),
+            "stems.csv:3:17: crown_radius_m: '25' is not allowed; allowed: 0.1 .. 21.5 m");
+  EXPECT_EQ(Message(kHeader + "3,7,20,15,8,2\n63,57,30,1.5,1,2.9\n"), "no error");  // a shrub
 }
 
 TEST_F(StemMapTest, LongitudeAndLatitudeAreNamed) {
