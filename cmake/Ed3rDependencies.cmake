@@ -49,3 +49,8 @@ target_link_libraries(ed3r_onednn INTERFACE "${ED3R_ONEDNN_LIBRARY}" OpenMP::Ope
 find_library(ED3R_OPENCV_dnn opencv_dnn REQUIRED)
 add_library(ed3r_opencv_dnn INTERFACE)
 target_link_libraries(ed3r_opencv_dnn INTERFACE ed3r_opencv "${ED3R_OPENCV_dnn}")
+
+# Films of missions (ed3r replay --video): the program alone needs it.
+find_library(ED3R_OPENCV_videoio opencv_videoio REQUIRED)
+add_library(ed3r_opencv_video INTERFACE)
+target_link_libraries(ed3r_opencv_video INTERFACE ed3r_opencv "${ED3R_OPENCV_videoio}")

@@ -6,6 +6,7 @@
 
 #include "engine/app/commands.h"
 #include "engine/app/decision_text.h"
+#include "engine/app/mission_film.h"
 #include "engine/app/mission_pictures.h"
 #include "engine/app/mission_viewer.h"
 #include "engine/app/stored_run.h"
@@ -21,7 +22,7 @@ namespace ed3r {
 namespace {
 
 struct Options {
-  std::string dir, mission, out;
+  std::string dir, mission, out, video;
   std::string cache = "results/cache";
   std::vector<int> frames;  // timesteps
   bool html = false;
@@ -30,18 +31,21 @@ struct Options {
 
 class TraceFile : public TraceSink {
  public:
-  explicit TraceFile(const std::filesystem::path& path) : file_(path) {
+  // `also` hears the same; none: nullptr.
+  TraceFile(const std::filesystem::path& path, TraceSink* also) : file_(path), also_(also) {
     file_.Write("timestep,time_s,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps,yaw_rad\n");
   }
   void Record(const TraceSample& s) override {
     file_.Write(fmt::format("{},{},{},{},{},{},{},{},{}\n", s.timestep, s.time_s, s.position_m.x(),
                             s.position_m.y(), s.position_m.z(), s.velocity_mps.x(), s.velocity_mps.y(),
                             s.velocity_mps.z(), s.yaw_rad));
+    if (also_ != nullptr) also_->Record(s);
   }
   void Commit() { file_.Commit(); }
 
  private:
   AtomicFile file_;
+  TraceSink* also_;
 };
 
 std::string CellOf(std::string_view, double value) { return CsvNumber(value); }
@@ -124,9 +128,11 @@ int Replay(const Options& options) {
   if (options.html) viewer = ViewerBundle();
   std::optional<MissionPictures> pictures;
   if (!options.frames.empty()) pictures.emplace(task);
+  std::optional<MissionFilm> film;
+  if (!options.video.empty()) film.emplace(task, options.video);
   MakeFolder(out);
 
-  TraceFile trace(out / "trace.csv");
+  TraceFile trace(out / "trace.csv", film ? &*film : nullptr);
   task.trace = &trace;
   const MissionRecord flown = FlyMission(task);
   const bool identical = DigestOf(flown) == DigestOf(stored.record);
@@ -140,6 +146,7 @@ int Replay(const Options& options) {
     if (k <= flown.timesteps)  // a flight that differs may be shorter
       fmt::print("{}", pictures->Write(flown, k, (out / fmt::format("step{:03}", k)).string()));
   if (viewer) WriteViewer(run, options, task.scene, *viewer, out / "mission.html");
+  if (film) fmt::print("{}", film->Write(flown, options.mission + " of " + run.Plan().name));
   fmt::print("{}: {} in {}, {:.1f} s, {:.2f} kJ; {}\n", options.mission,
              NameOf(static_cast<Outcome>(flown.outcome)), Counted(flown.timesteps, "timestep"),
              flown.duration_s, flown.total_j / 1000.0,
@@ -157,6 +164,12 @@ Command AddReplay(Program& program) {
   parser.Option("DIR", options->dir, "Run directory").Required();
   parser.Option("MISSION", options->mission, "ARM/NUMBER, e.g. rbs/12; missions count from 0").Required();
   parser.Option("--out", options->out, "Folder for trace and map; default DIR/replay/MISSION").Path();
+  parser
+      .Option(
+          "--video", options->video,
+          "Also the mission as a film of about a minute at most, FILE.mp4: what the camera sees, with time, "
+          "SCS, battery and command, and the map from above")
+      .Path();
   parser
       .Option("--frames", options->frames,
               "Also pictures of what the camera saw in these timesteps, from 1; e.g. 1,4 or 1 4")

@@ -8,6 +8,9 @@
 
 #include "engine/app/decision_text.h"
 #include "engine/app/execution_reason.h"
+#include "engine/app/mission_clock.h"
+#include "engine/app/viewer_frames.h"
+#include "engine/app/viewer_rays.h"
 #include "engine/core/check.h"
 #include "engine/store/digest.h"
 #include "studies/figures/mission_columns.h"
@@ -22,20 +25,10 @@ constexpr int kTraceStride = 8;  // of kTraceHz: three points a second
 constexpr int kMostNodes = 200;  // of the drawn ground along its longer side
 constexpr std::size_t kBestCandidates = 24, kOtherCandidates = 40;
 
-double DurationS(const TimestepRecord& s) {
-  return s.horizontal_s + s.ascent_s + s.descent_s + s.turning_s + s.sensing_s + s.computing_s +
-         s.transmitting_s;
-}
-
-std::vector<double> Begins(const MissionRecord& record) {
-  std::vector<double> begins = {0.0};
-  for (const TimestepRecord& step : record.steps) begins.push_back(begins.back() + DurationS(step));
-  return begins;
-}
-
 // Keeps every kTraceStride-th sample and the last one of each timestep.
 class Track : public TraceSink {
  public:
+  explicit Track(const MissionTask& task) : rays_(task.scene, task.config) {}
   void Record(const TraceSample& sample) override {
     if (sample.timestep != last_.timestep && count_ > 0) Keep();
     last_ = sample;
@@ -57,6 +50,11 @@ class Track : public TraceSink {
     }
     return json;
   }
+  Json ShortRaysJson() const {
+    Json list = Json::array();
+    for (std::size_t i = 0; i < samples_.size(); ++i) rays_.Add(i, samples_[i], list);
+    return list;
+  }
 
  private:
   void Keep() {
@@ -65,6 +63,7 @@ class Track : public TraceSink {
       samples_.push_back(last_);
   }
 
+  ShortRays rays_;
   std::vector<TraceSample> samples_;
   TraceSample last_;
   std::size_t count_ = 0;
@@ -163,11 +162,6 @@ Json StepsJson(const MissionRecord& record, const std::vector<double>& begins) {
 
 void AddDecisions(const MissionTask& task, const MissionRecord& record, Json& json) {
   json["decisions"] = Json::array();
-  if (task.pixels != nullptr) {
-    json["decisions_note"] =
-        "candidates are not shown for missions that look at pixels; 'ed3r explain' tells those of a timestep";
-    return;
-  }
   const std::map<std::uint32_t, DecisionProbe> probes = AskAgents(task, record.timesteps);
   for (const TimestepRecord& step : record.steps)
     json["decisions"].push_back(DecisionJson(task, probes.at(static_cast<std::uint32_t>(step.k)), step));
@@ -179,11 +173,11 @@ Json ViewerMission(StoredRun& run, const std::string& mission) {
   const RunId id = run.Find(mission);
   const StoredMission stored = run.Reader().LoadMission(id);
   MissionTask task = run.Task(id);
-  Track track;
+  Track track(task);
   task.trace = &track;
   const MissionRecord record = FlyMission(task);
   task.trace = nullptr;
-  const std::vector<double> begins = Begins(record);
+  const std::vector<double> begins = BeginsS(record);
   const Stage& stage = run.Plan().stages.at(static_cast<std::size_t>(id.stage));
   const Config& config = task.config;
   Json json = {
@@ -200,13 +194,18 @@ Json ViewerMission(StoredRun& run, const std::string& mission) {
       {"eta_min", config.agents.eta_min},
       {"camera",
        {{"hfov_deg", config.sensing.camera_hfov_deg},
+        {"frames", config.sensing.Frames()},
         {"aspect", static_cast<double>(config.sensing.camera_width_px) / config.sensing.camera_height_px}}},
       {"duration_s", begins.back()},
       {"energy_j", record.total_j},
       {"battery_j", record.battery_left_j + record.total_j},
       {"start", {record.start_x_m, record.start_y_m, record.start_z_m, record.start_yaw_rad}}};
   json["track"] = track.ToJson(begins);
+  json["lidar"] = {{"range_m", config.sensing.lidar_range_m},
+                   {"safety_m", config.robot.safety_distance_m},
+                   {"met", track.ShortRaysJson()}};
   json["steps"] = StepsJson(record, begins);
+  json["frames"] = ViewerFrames(task, record);
   AddDecisions(task, record, json);
   return json;
 }

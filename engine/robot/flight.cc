@@ -27,19 +27,11 @@ constexpr double kSettledMps = 0.10;
 constexpr double kSettledMpsPerGust = 0.10;
 constexpr double kSettledRad = std::numbers::pi / 180.0;
 constexpr double kSettledRadps = 0.1;
-// Around the robot inside the LiDARs' tube: for tracking error, the parts of a tree that fit between two
-// rays, and the 4 cm by which Bullet thickens the scene; gusts push the robot further off its line.
-constexpr double kTubeMarginM = 0.20;
-constexpr double kTubeMarginGustS = 0.10;
 
 Airframe FlyableAirframe(const Config& config) {
   const std::string problem = CheckFlyable(config);
   if (!problem.empty()) throw UserError(problem);
   return Airframe(config);
-}
-
-double TubeMarginM(const EnvironmentConfig& environment) {
-  return kTubeMarginM + kTubeMarginGustS * environment.gust_mps;
 }
 
 // Steps from one beat of `rate_hz` to the next.

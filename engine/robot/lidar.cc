@@ -17,6 +17,10 @@ constexpr double kRaySpacingM = 0.10;
 // Wider tubes spread the same number of rays, down to one column per thinnest trunk.
 constexpr int kUsualRays = 160;
 constexpr double kWidestSpacingM = 0.25;
+// For tracking error, the parts of a tree that fit between two rays, and the 4 cm by which Bullet thickens the
+// scene; gusts push the robot further off its line.
+constexpr double kTubeMarginM = 0.20;
+constexpr double kTubeMarginGustS = 0.10;
 
 // Points spread evenly over a disc (Vogel's spiral): whatever straight edge enters the tube meets one soon.
 std::vector<Eigen::Vector2d> SpreadOverDisc(double radius_m) {
@@ -34,6 +38,10 @@ std::vector<Eigen::Vector2d> SpreadOverDisc(double radius_m) {
 }
 
 }  // namespace
+
+double TubeMarginM(const EnvironmentConfig& environment) {
+  return kTubeMarginM + kTubeMarginGustS * environment.gust_mps;
+}
 
 LidarBundle::LidarBundle(const StaticGeometry& geometry, double tube_radius_m, double range_m)
     : geometry_(geometry), range_m_(range_m), offset_m_(SpreadOverDisc(tube_radius_m)) {}

@@ -12,9 +12,13 @@
 #include <limits>
 #include <vector>
 
+#include "engine/config/environment.h"
 #include "engine/world/geometry.h"
 
 namespace ed3r {
+
+// Around the robot inside the LiDARs' tube.
+double TubeMarginM(const EnvironmentConfig& environment);
 
 class LidarBundle {
  public:

@@ -23,17 +23,17 @@ struct Together {
   std::vector<ArmPlan> plans;
   PageMissions missions;
   struct Origin {
-    std::string label, dir, stored_name;
+    std::string run, dir, stored_name;
   };
   std::vector<Origin> origins;  // of the arms
 };
 
-void Add(const ComparedRun& run, Together& together) {
+void Add(const ComparedRun& run, const std::string& letter, Together& together) {
   Report report;
   for (const ArmData& arm : run.results.arms) report.told.push_back(ComputeMetrics(arm));
   PageMissions missions = ReadPageMissions(report, run.results, run.dir);
   for (std::size_t a = 0; a < report.told.size(); ++a) {
-    together.origins.push_back({run.label, run.dir, report.told[a].stage + '/' + report.told[a].name});
+    together.origins.push_back({letter, run.dir, report.told[a].stage + '/' + report.told[a].name});
     report.told[a].stage = missions.arms[a].stage = run.label + '/' + report.told[a].stage;
   }
   std::move(report.told.begin(), report.told.end(), std::back_inserter(together.metrics));
@@ -52,6 +52,11 @@ FoundScene SceneOf(const ComparedRun& run) {
     if (const std::string world = plan.Setting("mission.world"); !world.empty())
       return FindScene(reader, world);
   return {nullptr, "the plan names no world"};
+}
+
+// Short names for the pictures: A, B, ...
+std::string Letter(std::size_t run) {
+  return run < 26 ? std::string(1, static_cast<char>('A' + run)) : fmt::format("#{}", run + 1);
 }
 
 std::string Names(const std::vector<ComparedRun>& runs) {
@@ -90,7 +95,7 @@ Json ComparePageData(const std::vector<ComparedRun>& runs, const VariantStudy& s
                      const std::vector<std::string>& departures, const std::string& command) {
   ED3R_CHECK(runs.size() > 1, "runs to compare");
   Together together;
-  for (const ComparedRun& run : runs) Add(run, together);
+  for (std::size_t r = 0; r < runs.size(); ++r) Add(runs[r], Letter(r), together);
   const FoundScene found = SceneOf(runs.front());
   Json figures = MakeFigureData({.name = Names(runs),
                                  .arms = together.missions.arms,
@@ -116,10 +121,14 @@ Json ComparePageData(const std::vector<ComparedRun>& runs, const VariantStudy& s
   data["answer"] = ComparisonSentences(study);
   data["departures"] = departures;
   data["compared"] = study.variants;
+  data["run_letters"] = Json::array();
+  for (std::size_t r = 0; r < runs.size(); ++r)
+    data["run_letters"].push_back({{"letter", Letter(r)}, {"run", runs[r].label}});
   for (std::size_t a = 0; a < together.origins.size(); ++a) {
     const Together::Origin& origin = together.origins[a];
     Json& arm = data["arms"][a];
-    arm["label"] = origin.label + ": " + ArmLabel(together.metrics[a].name);
+    arm["label"] = fmt::format("{} · {}", ArmLabel(together.metrics[a].name), origin.run);
+    arm["run"] = origin.run;
     arm["stored_name"] = origin.stored_name;
     arm["dir"] = origin.dir;
   }

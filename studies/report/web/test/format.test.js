@@ -15,6 +15,7 @@ test("numbers are printed as the text tables do", () => {
 });
 
 test("an interval is none where an end is", () => {
+  assert.equal(interval(-3.65, -0.05, 2), "−3.65 to −0.05");
   assert.equal(interval(8.126, 13.19, 2), "8.13–13.19");
   assert.equal(interval(null, 1, 2), "");
   assert.equal(withInterval({ value: 1, lo: null, hi: null }, { decimals: 1, unit: "kJ" }), "1.0 kJ");

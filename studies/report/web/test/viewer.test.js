@@ -16,6 +16,17 @@ const data = {
     z_m: [50, 50, 50, 60],
     yaw_rad: [3, -3, -3, -3],
   },
+  // Of the track's second and third point.
+  lidar: {
+    range_m: 30,
+    safety_m: 2,
+    met: [
+      [1, 10, 0, 38, 0],
+      [1, 15, 0, 50, 1],
+      [2, 10, 0, 20.5, 0],
+    ],
+  },
+  battery_j: 10000,
   steps: {
     k: [1, 2],
     begin_s: [0, 10],
@@ -33,6 +44,7 @@ const data = {
     yaw_rad: [-3, -3],
     tilt_rad: [0.1, 0.2],
     scs: [0.2, 0.8],
+    battery_j: [8470, 5930],
     horizontal_j: [1000, 2000],
     ascent_j: zero,
     descent_j: zero,
@@ -74,6 +86,23 @@ test("it turns the short way", () => {
 
 test("a score is known once its timestep has ended", () => {
   assert.deepEqual([0, 9.9, 10, 19.9, 20].map(mission.scs), [null, null, 0.2, 0.2, 0.8]);
+});
+
+test("the battery is told as it was when the last timestep had ended", () => {
+  assert.deepEqual([0, 9.9, 10, 20].map(mission.battery), [1, 1, 0.847, 0.593]);
+});
+
+test("LiDARs tell what they met at the moment", () => {
+  assert.deepEqual(mission.lidarAt(3.5), [
+    { x: 10, y: 0, z: 38, ahead: false, distance: 12 },
+    { x: 15, y: 0, z: 50, ahead: true, distance: 5 },
+  ]);
+  assert.equal(mission.lidarAt(12)[0].distance, 29.5);
+  assert.deepEqual(mission.lidarAt(2), []);
+});
+
+test("the camera's picture is of the last look that has begun", () => {
+  assert.deepEqual([0, 3.9, 4, 10, 14].map(mission.lookedAt), [null, null, 0, 0, 1]);
 });
 
 test("energy adds up by part", () => {

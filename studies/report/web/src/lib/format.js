@@ -10,11 +10,11 @@ export function number(value, decimals = 2) {
   return value.toFixed(digits).replace("-", MINUS);
 }
 
-/** "8.13–13.19", "" where there is no interval. */
+/** "8.13–13.19", "−3.65 to −0.05", "" where there is no interval. */
 export const interval = (lo, hi, decimals) =>
   lo === null || lo === undefined || hi === null || hi === undefined
     ? ""
-    : `${number(lo, decimals)}–${number(hi, decimals)}`;
+    : `${number(lo, decimals)}${lo < 0 || hi < 0 ? " to " : "–"}${number(hi, decimals)}`;
 
 /** "10.66 kJ (8.13–13.19)". */
 export function withInterval(cell, metric) {

@@ -7,6 +7,10 @@ import { withTooltip } from "../lib/tooltip.js";
 
 const MAIN = ["total_energy_kj", "duration_mean_min", "msr_pct", "fp_pct", "bd_pct", "wer_pct", "mscs_pct"];
 
+const ABBREVIATIONS =
+  "Means of a mission's energy and duration. MSR: missions that ended in success. FP: in a false alarm. BD: with an empty battery. " +
+  "WER: share of all energy that failed missions took. MSCS: mean confidence of reliable looks.";
+
 export function headline(model, store) {
   const { data } = model;
   const text = el(
@@ -14,7 +18,13 @@ export function headline(model, store) {
     { class: "lead" },
     el("p", { class: "kicker" }, `${data.name} · ${told(data)}`),
     el("h1", {}, data.question || data.name),
-    el("p", { class: "answer" }, data.answer.length ? data.answer.join(" ") : "No missions yet."),
+    el("p", { class: "answer" }, answerOf(data)),
+    data.run_letters &&
+      el(
+        "p",
+        { class: "key letters" },
+        data.run_letters.map(({ letter, run }) => el("span", {}, el("b", {}, letter), ` ${run}`)),
+      ),
     data.departures.map((note) => el("p", { class: "note" }, note)),
   );
   const table = el("div", {
@@ -41,6 +51,13 @@ export function headline(model, store) {
   };
 }
 
+function answerOf(data) {
+  if (data.answer.length > 0) return data.answer.join(" ");
+  return data.arms.some((arm) => arm.missions > 0)
+    ? "No answer yet: only the warm-up has been flown so far."
+    : "No missions yet.";
+}
+
 function told(data) {
   const flown = data.arms.reduce((sum, arm) => sum + arm.missions, 0);
   const networks = Math.max(...data.arms.map((arm) => arm.networks), 0);
@@ -50,6 +67,8 @@ function told(data) {
 const filtered = (state) => state.site !== "all" || state.outcome !== "all";
 
 const key = (state, model) => [
+  ABBREVIATIONS,
+  el("br"),
   el("b", {}, "Bold"),
   " ours, beneath it the 95 % interval, also drawn on a scale common to the column; ",
   el("span", { class: "paper-mark", "aria-hidden": "true" }, "◇"),

@@ -5,7 +5,7 @@ export function makeModel(data) {
   const metrics = data.metrics.map((metric, index) => ({ ...metric, index }));
   const byName = Object.fromEntries(metrics.map((metric) => [metric.name, metric]));
   const arms = data.arms.map((arm, index) => ({ ...arm, index, colour: `var(--arm-${index})` }));
-  const flown = arms.filter((arm) => arm.missions > 0);
+  const flown = besideOneAnother(arms.filter((arm) => arm.missions > 0));
   const shown = flown.some((arm) => !arm.warmup) ? flown.filter((arm) => !arm.warmup) : flown;
   const sites = sitesOf(data);
 
@@ -78,6 +78,13 @@ export function makeModel(data) {
     pooled,
     command,
   };
+}
+
+/** Of runs that are compared: the same arm of each run in a row. */
+function besideOneAnother(arms) {
+  const first = new Map();
+  for (const arm of arms) if (!first.has(arm.stored_name)) first.set(arm.stored_name, arm.index);
+  return [...arms].sort((a, b) => first.get(a.stored_name) - first.get(b.stored_name) || a.index - b.index);
 }
 
 /** A word for a POSIX shell. */

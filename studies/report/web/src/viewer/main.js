@@ -5,7 +5,8 @@ import { isDark } from "../lib/relief.js";
 import { makeClock } from "./clock.js";
 import { makeMap } from "./map2d.js";
 import { makeMission, OUTCOMES } from "./mission.js";
-import { decisionPanel } from "./panel.js";
+import { cameraPicture, decisionPanel } from "./panel.js";
+import { NEAR_M, RAY_COLOURS } from "./robot3d.js";
 import { hasWebGl, makeScene } from "./scene3d.js";
 import { timelines } from "./timelines.js";
 
@@ -21,6 +22,7 @@ const columns = data.missions.map((missionData) => {
   const view = flat ? makeMap(data.world, mission) : makeScene(data.world, mission, isDark());
   const panel = decisionPanel(mission);
   const lines = timelines(mission, clock);
+  const camera = cameraPicture(mission);
   const end = OUTCOMES[missionData.outcome];
   const node = el(
     "section",
@@ -37,11 +39,12 @@ const columns = data.missions.map((missionData) => {
       ),
       !missionData.identical && el("p", { class: "note" }, "This flight differs from the stored record."),
     ),
-    view.node,
+    el("div", { class: "seen" }, view.node, camera?.node),
+    !flat && el("p", { class: "key legend" }, rayLegend(missionData.lidar)),
     panel.node,
     lines.node,
   );
-  return { node, view, panel, lines };
+  return { node, view, panel, lines, camera };
 });
 
 const play = button("Play", () => clock.toggle(), { class: "play" });
@@ -101,6 +104,16 @@ document.getElementById("app").append(
   ),
 );
 
+function rayLegend({ range_m }) {
+  return [
+    ["a LiDAR meets a surface within " + number(range_m, 0) + " m", RAY_COLOURS.far],
+    ["ahead, where the safety rule looks", RAY_COLOURS.ahead],
+    [`nearer than ${NEAR_M} m`, RAY_COLOURS.near],
+  ].map(([label, colour]) =>
+    el("span", {}, el("span", { class: "square", style: `--c:${colour}`, "aria-hidden": "true" }), label),
+  );
+}
+
 /** To the begin of the next or the previous timestep of the first mission. */
 function step(by) {
   const { begin_s: begins } = data.missions[0].steps;
@@ -120,8 +133,9 @@ function update(time, playing) {
   scrub.value = time;
   scrub.setAttribute("aria-valuetext", `${number(time / 60, 2)} minutes`);
   told.textContent = `${number(time, 1)} s of ${number(clock.end, 1)} s`;
-  for (const { view, panel, lines } of columns) {
+  for (const { view, panel, lines, camera } of columns) {
     view.update(time);
+    camera?.update(time);
     panel.update(time);
     lines.update(time);
   }

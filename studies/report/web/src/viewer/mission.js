@@ -18,6 +18,8 @@ const lastAtOrBefore = (list, value) => {
 export function makeMission(data) {
   const { steps, track } = data;
   const count = steps.k.length;
+  const met = new Map();
+  for (const ray of data.lidar.met) met.set(ray[0], [...(met.get(ray[0]) ?? []), ray]);
 
   /** Index of the timestep at `time`, from 0. */
   const stepAt = (time) => lastAtOrBefore(steps.begin_s, Math.min(time, data.duration_s));
@@ -69,11 +71,38 @@ export function makeMission(data) {
     return i < 0 ? null : steps.scs[i];
   };
 
+  /** Index of the last timestep whose camera has looked at `time`, null before the first. */
+  const lookedAt = (time) => {
+    const i = stepAt(time);
+    const looked = time - steps.begin_s[i] >= moving(i) ? i : i - 1;
+    return looked < 0 ? null : looked;
+  };
+
+  /** What the LiDARs meet within their range at `time`: points {x, y, z, ahead, distance}. */
+  function lidarAt(time) {
+    if (track.t_s.length === 0) return [];
+    const sample = lastAtOrBefore(track.t_s, Math.min(time, data.duration_s));
+    const at = [track.x_m[sample], track.y_m[sample], track.z_m[sample]];
+    return (met.get(sample) ?? []).map(([, x, y, z, ahead]) => ({
+      x,
+      y,
+      z,
+      ahead: ahead === 1,
+      distance: Math.hypot(x - at[0], y - at[1], z - at[2]),
+    }));
+  }
+
+  /** Share of the battery left when the last timestep had ended. */
+  const battery = (time) => {
+    const i = time >= data.duration_s ? count - 1 : stepAt(time) - 1;
+    return i < 0 ? 1 : steps.battery_j[i] / data.battery_j;
+  };
+
   /** The flown path as [{x, y, z, step}], through the positions after each timestep. */
   const path = () => [
     { x: data.start[0], y: data.start[1], z: data.start[2], step: -1 },
     ...steps.k.map((_, i) => ({ x: steps.x_m[i], y: steps.y_m[i], z: steps.z_m[i], step: i })),
   ];
 
-  return { data, steps, count, stepAt, phase, pose, scs, path, moving };
+  return { data, steps, count, stepAt, phase, pose, scs, path, moving, lookedAt, lidarAt, battery };
 }

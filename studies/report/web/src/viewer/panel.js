@@ -39,10 +39,44 @@ function nowText(mission, time, pose, i) {
     value("now", mission.phase(time)),
     value("SCS", scs === null ? "–" : `${number(100 * scs, 1)} %`),
     value("threshold", `${number(100 * data.eta_min, 0)} %`),
-    value("battery", `${number((100 * steps.battery_j[i]) / data.battery_j, 1)} %`),
+    value("battery", `${number(100 * mission.battery(time), 1)} %`),
     value("rate", `${number(steps.rate_bps[i] / 1e6, 1)} Mbit/s`),
     value("at", `${number(pose.x, 1)}, ${number(pose.y, 1)}, ${number(pose.z, 1)} m`),
+    value("LiDAR, nearest", nearest(mission, time)),
   ];
+}
+
+function nearest(mission, time) {
+  const met = mission.lidarAt(time);
+  if (met.length === 0) return `nothing in ${number(mission.data.lidar.range_m, 0)} m`;
+  const least = met.reduce((a, b) => (b.distance < a.distance ? b : a));
+  return `${number(least.distance, 1)} m${least.ahead ? " ahead" : ""}`;
+}
+
+/** The frame that the camera of a pixel mission saw in its last look. */
+export function cameraPicture(mission) {
+  const { frames } = mission.data;
+  if (!frames) return null;
+  const image = el("img", { width: frames.width_px, height: frames.height_px, alt: "" });
+  const told = el("figcaption", { class: "key" });
+  const node = el("figure", { class: "camera" }, image, told);
+  let shown;
+  return {
+    node,
+    update(time) {
+      const i = mission.lookedAt(time);
+      if (i === shown) return;
+      shown = i;
+      const jpeg = i === null ? undefined : frames.jpeg[i];
+      image.hidden = !jpeg;
+      if (jpeg) image.src = `data:image/jpeg;base64,${jpeg}`;
+      else image.removeAttribute("src");
+      image.alt = jpeg ? `What the camera saw in timestep ${i + 1}` : "";
+      told.textContent = jpeg
+        ? `timestep ${i + 1}, frame ${frames.number + 1} of its ${mission.data.camera.frames}: fire ${mission.steps.fire_in_view[i] ? "" : "not "}in view`
+        : "the camera has not looked yet";
+    },
+  };
 }
 
 function stageOne(mission, i) {
@@ -164,7 +198,7 @@ function stageTwo(mission, i) {
     el(
       "p",
       { class: "key" },
-      `33 frames: mean ${number(steps.confidence_mean[i], 3)}, sd ${number(steps.confidence_sd[i], 3)}, SCS ${number(steps.scs[i], 3)}; fire ${steps.fire_in_view[i] ? "" : "not "}in view; ${number(steps.total_j[i], 0)} J`,
+      `${data.camera.frames} frames: mean ${number(steps.confidence_mean[i], 3)}, sd ${number(steps.confidence_sd[i], 3)}, SCS ${number(steps.scs[i], 3)}; fire ${steps.fire_in_view[i] ? "" : "not "}in view; ${number(steps.total_j[i], 0)} J`,
     ),
   ].filter(Boolean);
 }

@@ -15,7 +15,6 @@ import {
   Group,
   InstancedMesh,
   Line,
-  LineBasicMaterial,
   LineDashedMaterial,
   Matrix4,
   Mesh,
@@ -38,12 +37,10 @@ import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { el } from "../lib/dom.js";
 import { shareColour } from "../lib/palette.js";
+import { lidarRays, robotOf } from "./robot3d.js";
+import { toThree } from "./world_axes.js";
 
 const SMOKE_PUFFS = 14;
-const ROBOT_SIZE_M = 7; // across, many times the real one, so that it is seen
-const CAMERA_REACH_M = 70;
-
-export const toThree = (x, y, z) => new Vector3(x, z, -y);
 
 export function hasWebGl() {
   try {
@@ -67,7 +64,9 @@ export function makeScene(world, mission, dark) {
   const path = pathOf(mission);
   const robot = robotOf(mission);
   const link = linkLine();
-  scene.add(path.node, robot.node, link);
+  const rays = lidarRays(mission);
+  robot.node.add(sign("robot", 9));
+  scene.add(path.node, robot.node, rays.node, link);
   const camera = new PerspectiveCamera(50, 1, 0.5, 5000);
   const controls = new OrbitControls(camera, renderer.domElement);
   controls.maxPolarAngle = Math.PI * 0.495;
@@ -100,7 +99,7 @@ export function makeScene(world, mission, dark) {
     );
     camera.fov = mode === "onboard" ? onboardFov(mission.data.camera) : 50;
     controls.enabled = mode !== "onboard";
-    robot.node.visible = mode !== "onboard";
+    robot.node.visible = rays.node.visible = mode !== "onboard";
     if (mode === "onboard") {
       camera.position.copy(at);
       camera.lookAt(at.clone().add(ahead));
@@ -118,6 +117,7 @@ export function makeScene(world, mission, dark) {
       time = now;
       const pose = mission.pose(time);
       robot.move(pose, mission.phase(time));
+      rays.move(pose, time);
       path.until(mission.stepAt(time), time >= mission.data.duration_s);
       fire.flicker(time);
       moveLink(link, world, mission, pose, time);
@@ -366,83 +366,6 @@ function pathOf(mission) {
           (line.material.opacity = stop.material.opacity = i < step || ended ? 1 : i === step ? 0.7 : 0.16),
       ),
   };
-}
-
-function robotOf(mission) {
-  const group = new Group();
-  const body = new Group();
-  const dark = new MeshLambertMaterial({ color: "#20262b" }),
-    blade = new MeshBasicMaterial({ color: "#d55e00", side: DoubleSide, transparent: true, opacity: 0.85 });
-  for (const angle of [0.25, 0.75, 1.25, 1.75]) {
-    const arm = new Mesh(new CylinderGeometry(0.25, 0.25, ROBOT_SIZE_M / 2, 5), dark);
-    arm.rotation.set(Math.PI / 2, 0, angle * Math.PI, "YXZ");
-    arm.rotation.set(0, angle * Math.PI, Math.PI / 2);
-    arm.position.set(
-      (Math.cos(angle * Math.PI) * ROBOT_SIZE_M) / 4,
-      0,
-      (-Math.sin(angle * Math.PI) * ROBOT_SIZE_M) / 4,
-    );
-    const rotor = new Mesh(new TorusGeometry(1.5, 0.32, 6, 18), blade);
-    rotor.rotation.x = Math.PI / 2;
-    rotor.position.set(
-      (Math.cos(angle * Math.PI) * ROBOT_SIZE_M) / 2,
-      0.3,
-      (-Math.sin(angle * Math.PI) * ROBOT_SIZE_M) / 2,
-    );
-    body.add(arm, rotor);
-  }
-  body.add(new Mesh(new SphereGeometry(1.4, 12, 8), dark));
-  const eye = frustum(mission.data.camera);
-  group.add(body, eye);
-  return {
-    node: group,
-    move(pose, phase) {
-      group.position.copy(toThree(pose.x, pose.y, pose.z));
-      group.rotation.y = pose.yaw;
-      eye.rotation.z = -pose.tilt;
-      eye.children.forEach(
-        (part) => (part.material.opacity = part.userData.opacity * (phase === "sensing" ? 1 : 0.4)),
-      );
-    },
-  };
-}
-
-/** Looks along x. */
-function frustum({ hfov_deg, aspect }) {
-  const half = Math.tan((hfov_deg * Math.PI) / 360) * CAMERA_REACH_M;
-  const up = half / aspect;
-  const corners = [
-    [1, 1],
-    [1, -1],
-    [-1, -1],
-    [-1, 1],
-  ].map(([a, b]) => [CAMERA_REACH_M, a * up, b * half]);
-  const faces = new BufferGeometry();
-  faces.setAttribute(
-    "position",
-    new BufferAttribute(
-      new Float32Array(corners.flatMap((corner, i) => [0, 0, 0, ...corner, ...corners[(i + 1) % 4]])),
-      3,
-    ),
-  );
-  const sides = new Mesh(
-    faces,
-    new MeshBasicMaterial({ color: "#ffd45c", transparent: true, side: DoubleSide, depthWrite: false }),
-  );
-  sides.userData.opacity = 0.14;
-  const edges = new BufferGeometry().setFromPoints(
-    corners.flatMap((corner, i) => [
-      new Vector3(),
-      new Vector3(...corner),
-      new Vector3(...corners[(i + 1) % 4]),
-      new Vector3(...corner),
-    ]),
-  );
-  const lines = new Line(edges, new LineBasicMaterial({ color: "#f0b030", transparent: true }));
-  lines.userData.opacity = 0.9;
-  const group = new Group();
-  group.add(sides, lines);
-  return group;
 }
 
 function linkLine() {

@@ -1,0 +1,29 @@
+// What the LiDARs of a flown mission met, for its viewer.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "engine/config/config.h"
+#include "engine/robot/flight.h"
+#include "engine/robot/lidar.h"
+#include "engine/world/scene.h"
+
+namespace ed3r {
+
+class ShortRays {
+ public:
+  // The scene must outlive this.
+  ShortRays(const Scene& scene, const Config& config);
+
+  // Appends [at, x_m, y_m, z_m, ahead] for each surface within range: the point, in the world, that a LiDAR's middle ray
+  // meets (six, along the axes of the yaw-stabilised body; ahead 0), and, in motion, the point as far along it as the first
+  // surface in the tube that the safety rule looks at (ahead 1).
+  void Add(std::size_t at, const TraceSample& sample, nlohmann::ordered_json& list) const;
+
+ private:
+  const Scene& scene_;
+  double range_m_;
+  LidarBundle tube_;
+};
+
+}  // namespace ed3r
