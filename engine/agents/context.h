@@ -6,14 +6,17 @@
 
 #include "engine/agents/strategy.h"
 #include "engine/config/config.h"
+#include "engine/rfnn/direct_network.h"
 #include "engine/rfnn/model.h"
 
 namespace ed3r {
 
-// Trained networks, shared read-only; null where a strategy asks none.
+// Networks, shared read-only; null where a strategy asks none. A direct one goes before one that scores actions.
 struct Networks {
   const Model* rc = nullptr;
   const Model* robot = nullptr;
+  const DirectNetwork* direct_rc = nullptr;
+  const DirectNetwork* direct_robot = nullptr;
 };
 
 struct AgentContext {

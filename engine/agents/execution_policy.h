@@ -26,7 +26,7 @@ struct AllowedExecutions {
 };
 
 // What made a choice, for `ed3r explain`; not stored.
-enum class DecidedBy { kRules, kNetwork, kDraw, kStrategy };
+enum class DecidedBy { kRules, kNetwork, kDraw, kStrategy, kDirect };
 
 struct ExecutionDecision {
   Execution execution = Execution::kFull;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/agents/context.h"
+#include "engine/agents/strategies/direct.h"
 #include "engine/agents/strategies/drawn_execution.h"
 #include "engine/agents/strategies/greedy_execution.h"
 #include "engine/agents/strategies/greedy_motion.h"
@@ -28,6 +29,16 @@ std::unique_ptr<ExecutionPolicy> MakeExecution(const AgentContext& context) {
   return std::make_unique<Policy>(context);
 }
 
+// A network that decides by itself takes the place of one that scores actions.
+std::unique_ptr<MotionPolicy> MakeBestMotion(const AgentContext& context) {
+  if (context.networks.direct_rc != nullptr) return std::make_unique<DirectMotion>(context);
+  return std::make_unique<GreedyMotion>(context);
+}
+std::unique_ptr<ExecutionPolicy> MakeBestExecution(const AgentContext& context) {
+  if (context.networks.direct_robot != nullptr) return std::make_unique<DirectExecution>(context);
+  return std::make_unique<GreedyExecution>(context);
+}
+
 constexpr AllowedExecutions kAll{};
 constexpr AllowedExecutions kLocal{.offload = false, .full = true, .quantized = true};
 constexpr AllowedExecutions kOffloadOnly{.offload = true, .full = false, .quantized = false};
@@ -40,9 +51,9 @@ template <class Policy>
 constexpr ExecutionPart kExecution{MakeExecution<Policy>, kAll};
 
 constexpr MotionPart kWalk = kMotion<RandomWalk>;
-constexpr MotionPart kGreedy{MakeMotion<GreedyMotion>, true};
-constexpr ExecutionPart kBest{MakeExecution<GreedyExecution>, kAll, true};
-constexpr ExecutionPart kBestLocal{MakeExecution<GreedyExecution>, kLocal, true};
+constexpr MotionPart kGreedy{MakeBestMotion, true};
+constexpr ExecutionPart kBest{MakeBestExecution, kAll, true};
+constexpr ExecutionPart kBestLocal{MakeBestExecution, kLocal, true};
 constexpr ExecutionPart kOffload{MakeExecution<OnlyExecution<Execution::kOffload>>, kOffloadOnly};
 constexpr ExecutionPart kFull{MakeExecution<OnlyExecution<Execution::kFull>>, kFullOnly};
 constexpr ExecutionPart kQuantized{MakeExecution<OnlyExecution<Execution::kQuantized>>, kQuantizedOnly};

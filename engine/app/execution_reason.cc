@@ -87,7 +87,7 @@ nlohmann::ordered_json RulesJson(const MissionTask& task, const DecisionProbe& p
 }
 
 const char* NameOf(DecidedBy by) {
-  constexpr const char* kNames[] = {"rules", "network", "draw", "strategy"};
+  constexpr const char* kNames[] = {"rules", "network", "draw", "strategy", "direct"};
   return kNames[static_cast<std::size_t>(by)];
 }
 
@@ -104,6 +104,8 @@ std::string ChoiceText(DecidedBy by, const Strategy& strategy) {
       return "drawn at random from " + AllowedNames(strategy);
     case DecidedBy::kStrategy:
       return "the only execution of this strategy";
+    case DecidedBy::kDirect:
+      return "what the network likes best of " + AllowedNames(strategy);
     default:
       return fmt::format("the best prediction among {}", AllowedNames(strategy));
   }

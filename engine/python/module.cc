@@ -18,6 +18,7 @@
 
 #include "engine/core/check.h"
 #include "engine/python/fleets.h"
+#include "engine/python/networks.h"
 #include "engine/python/results.h"
 #include "engine/python/sweeps.h"
 #include "engine/rfnn/features.h"
@@ -148,6 +149,24 @@ void BindResults(py::module_& module) {
   module.def("code_names", &CodeNames);
 }
 
+OnnxTensor Tensor(const Floats& array) {
+  OnnxTensor tensor;
+  for (py::ssize_t axis = 0; axis < array.ndim(); ++axis) tensor.dims.push_back(array.shape(axis));
+  tensor.values.assign(array.data(), array.data() + array.size());
+  return tensor;
+}
+
+void BindNetworks(py::module_& module) {
+  module.def("network_bytes",
+             [](const std::string& name, const std::string& agent, const std::vector<Floats>& weights,
+                const std::vector<Floats>& biases, std::vector<float> mean, std::vector<float> inverse_sd) {
+               DenseChain chain{std::move(mean), std::move(inverse_sd), {}, {}};
+               for (const Floats& layer : weights) chain.weights.push_back(Tensor(layer));
+               for (const Floats& layer : biases) chain.biases.push_back(Tensor(layer));
+               return py::bytes(NetworkBytes(chain, name, agent));
+             });
+}
+
 void BindSweeps(py::module_& module) {
   py::class_<SweepRequest>(module, "SweepRequest")
       .def(
@@ -174,6 +193,7 @@ PYBIND11_MODULE(_core, module) {
   module.doc() = "The engine behind the package ed3r.";
   py::register_exception<ed3r::UserError>(module, "UserError", PyExc_ValueError);
   py::register_exception<ed3r::InternalError>(module, "InternalError", PyExc_RuntimeError);
+  ed3r::BindNetworks(module);
   ed3r::BindSweeps(module);
   ed3r::BindFleet(module);
   ed3r::BindResults(module);

@@ -72,6 +72,7 @@ struct NetworkDesign {
   std::span<const std::string_view> features;
   int states = 0;               // leading features that are state; the rest is action
   std::span<const int> hidden;  // neurons of the hidden layers
+  int decision = 0;             // values of a network that decides by itself (direct_network.h)
 
   int inputs() const { return static_cast<int>(features.size()); }
   int actions() const { return inputs() - states; }
@@ -79,7 +80,8 @@ struct NetworkDesign {
 
 inline constexpr std::array kRcHidden = {128, 64, 64, 32};
 inline constexpr std::array kRobotHidden = {128, 64, 32};
-inline constexpr NetworkDesign kRcNetwork = {"rc", kRcFeatures, kRcStates, kRcHidden};
-inline constexpr NetworkDesign kRobotNetwork = {"robot", kRobotFeatures, kRobotStates, kRobotHidden};
+inline constexpr NetworkDesign kRcNetwork = {"rc", kRcFeatures, kRcStates, kRcHidden, kRcInputs - kRcStates};
+inline constexpr NetworkDesign kRobotNetwork = {"robot", kRobotFeatures, kRobotStates, kRobotHidden,
+                                                kRobotActions.size()};
 
 }  // namespace ed3r

@@ -187,7 +187,7 @@ OnnxGraph ParseOnnxGraph(std::string_view bytes, const std::string& name) {
   return Parser(name).Model(bytes);
 }
 
-std::string OnnxGraphBytes(const OnnxGraph& graph, int features, const std::string& graph_name) {
+std::string OnnxGraphBytes(const OnnxGraph& graph, int features, const std::string& graph_name, int outputs) {
   constexpr std::uint64_t kIr = 7, kOpsetVersion = 13;
   constexpr std::uint32_t kVersion = 2;
   ProtobufWriter body;
@@ -195,7 +195,7 @@ std::string OnnxGraphBytes(const OnnxGraph& graph, int features, const std::stri
   body.Bytes(kGraphName, graph_name);
   for (const auto& [name, tensor] : graph.tensors) body.Bytes(kInitializer, TensorBytes(name, tensor));
   body.Bytes(kGraphInput, ValueBytes(graph.inputs.front(), features));
-  body.Bytes(kGraphOutput, ValueBytes(graph.outputs.front(), 1));
+  body.Bytes(kGraphOutput, ValueBytes(graph.outputs.front(), outputs));
   ProtobufWriter opset, model;
   opset.Number(kVersion, kOpsetVersion);
   model.Number(kIrVersion, kIr)

@@ -36,6 +36,8 @@ struct OnnxGraph {
 // Throws UserError that begins with `name`: no ONNX file, tensors that are no floats or not as long as they say.
 OnnxGraph ParseOnnxGraph(std::string_view bytes, const std::string& name);
 
-std::string OnnxGraphBytes(const OnnxGraph& graph, int features, const std::string& graph_name);
+// `features` and `outputs`: widths of the input and of the output.
+std::string OnnxGraphBytes(const OnnxGraph& graph, int features, const std::string& graph_name,
+                           int outputs = 1);
 
 }  // namespace ed3r

@@ -11,7 +11,6 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/sha256.h"
-#include "engine/rfnn/onnx_graph.h"
 
 namespace ed3r {
 namespace {
@@ -31,10 +30,7 @@ struct Layer {
 class Chain {
  public:
   Chain(const OnnxGraph& graph, const std::string& name, const NetworkDesign& design)
-      : graph_(graph), name_(name), design_(design) {
-    scaling_.input_mean.assign(static_cast<std::size_t>(design.inputs()), 0.0);
-    scaling_.input_sd.assign(static_cast<std::size_t>(design.inputs()), 1.0);
-  }
+      : graph_(graph), name_(name), design_(design) {}
 
   void Walk() {
     if (graph_.inputs.size() != 1 || graph_.outputs.size() != 1)
@@ -44,9 +40,12 @@ class Chain {
     for (const OnnxNode& node : graph_.nodes) Step(node);
     if (value_ != graph_.outputs.front())
       Refuse(fmt::format("its output '{}' is not the end of its chain of nodes", graph_.outputs.front()));
-    if (layers_.empty() || layers_.back().outputs != 1)
-      Refuse(fmt::format("gives {} values; allowed: one, the score of an action",
-                         layers_.empty() ? 0 : layers_.back().outputs));
+    if (layers_.empty()) Refuse("has no dense layer; allowed: 1 or more");
+    if (Decides() && layers_.back().outputs != design_.decision)
+      Refuse(fmt::format("gives {} values of {}; allowed: {}, its decision", layers_.back().outputs, width_,
+                         design_.decision));
+    if (!Decides() && layers_.back().outputs != 1)
+      Refuse(fmt::format("gives {} values; allowed: one, the score of an action", layers_.back().outputs));
     if (layers_.back().has_relu) Refuse("has a Relu behind its last layer");
     if (layers_.size() > kMaxDenseLayers)
       Refuse(fmt::format("has {} dense layers; allowed: 1 .. {}", layers_.size(), kMaxDenseLayers));
@@ -58,18 +57,25 @@ class Chain {
     return hidden;
   }
 
-  std::vector<float> Weights() const {
+  // Of the network of one output.
+  std::vector<float> Weights(int output) const {
     std::vector<float> flat;
-    for (const Layer& layer : layers_) {
-      flat.insert(flat.end(), layer.weights.begin(), layer.weights.end());
-      flat.insert(flat.end(), layer.biases.begin(), layer.biases.end());
+    for (std::size_t l = 0; l + 1 < layers_.size(); ++l) {
+      flat.insert(flat.end(), layers_[l].weights.begin(), layers_[l].weights.end());
+      flat.insert(flat.end(), layers_[l].biases.begin(), layers_[l].biases.end());
     }
+    const Layer& last = layers_.back();
+    const auto row = last.weights.begin() + static_cast<std::ptrdiff_t>(output) * last.inputs;
+    flat.insert(flat.end(), row, row + last.inputs);
+    flat.push_back(last.biases[static_cast<std::size_t>(output)]);
     if (!std::all_of(flat.begin(), flat.end(), [](float w) { return std::isfinite(w); }))
       Refuse("has a weight that is not finite");
     return flat;
   }
 
   const Scaling& scaling() const { return scaling_; }
+  int width() const { return width_; }
+  bool Decides() const { return width_ == design_.states; }
 
  private:
   [[noreturn]] void Refuse(const std::string& why) const {
@@ -105,7 +111,12 @@ class Chain {
       Relu(node);
     } else if (node.op == "Add" || node.op == "Mul" || node.op == "Sub" || node.op == "Div") {
       const OnnxTensor& operand = Operand(node, node.op == "Add" || node.op == "Mul");
-      layers_.empty() ? ScaleInput(node, operand) : ShiftOutput(node, operand);
+      if (layers_.empty())
+        ScaleInput(node, operand);
+      else if (Decides())
+        ShiftDecision(node, operand);
+      else
+        ShiftOutput(node, operand);
     } else if (node.op != "Identity" || node.inputs[0] != value_) {
       RefuseNode(node, "is not understood here");
     }
@@ -119,10 +130,22 @@ class Chain {
     if (node.inputs.size() > 2) SetBias(node, TensorOf(node, node.inputs[2]));
   }
 
+  // The first node that tells how many inputs there are tells what the network is for.
+  void SetWidth(std::int64_t width) {
+    if (width_ != 0) return;
+    if (width != design_.inputs() && width != design_.states)
+      Refuse(fmt::format("takes {} values; allowed: {} (it scores an action) or {} (it decides)", width,
+                         design_.inputs(), design_.states));
+    width_ = static_cast<int>(width);
+    scaling_.input_mean.assign(static_cast<std::size_t>(width), 0.0);
+    scaling_.input_sd.assign(static_cast<std::size_t>(width), 1.0);
+  }
+
   void AddLayer(const OnnxNode& node, const OnnxTensor& weights, bool transposed) {
     if (weights.dims.size() != 2) RefuseNode(node, "its weights have no two dimensions");
     const std::int64_t inputs = weights.dims[transposed ? 1 : 0], outputs = weights.dims[transposed ? 0 : 1];
-    const int expected = layers_.empty() ? design_.inputs() : layers_.back().outputs;
+    SetWidth(inputs);
+    const int expected = layers_.empty() ? width_ : layers_.back().outputs;
     if (inputs != expected || outputs > kMostNeurons)
       RefuseNode(node, fmt::format("takes {} values and gives {}; {} come, and at most {} go", inputs,
                                    outputs, expected, kMostNeurons));
@@ -156,7 +179,8 @@ class Chain {
   }
 
   void ScaleInput(const OnnxNode& node, const OnnxTensor& operand) {
-    const auto inputs = static_cast<std::size_t>(design_.inputs());
+    SetWidth(static_cast<std::int64_t>(operand.values.size()));
+    const auto inputs = static_cast<std::size_t>(width_);
     if (operand.values.size() != inputs)
       RefuseNode(node, fmt::format("has {} values for {} inputs", operand.values.size(), inputs));
     if (node.op == "Sub" && !shifted_input_ && !scaled_input_) {
@@ -194,10 +218,34 @@ class Chain {
     }
   }
 
+  // y scale + shift of a decision goes into the last layer.
+  void ShiftDecision(const OnnxNode& node, const OnnxTensor& operand) {
+    Layer& layer = layers_.back();
+    if (node.op == "Add" && !layer.has_bias && !layer.has_relu && !scaled_output_) {
+      SetBias(node, operand);
+      return;
+    }
+    const auto outputs = static_cast<std::size_t>(layer.outputs),
+               inputs = static_cast<std::size_t>(layer.inputs);
+    const bool scales = node.op == "Mul" && !scaled_output_, shifts = node.op == "Add" && !shifted_output_;
+    if (layer.has_relu || (!scales && !shifts)) RefuseNode(node, "does not belong here");
+    if (operand.values.size() != outputs)
+      RefuseNode(node, fmt::format("has {} values for {} outputs", operand.values.size(), outputs));
+    for (std::size_t o = 0; o < outputs; ++o) {
+      if (shifts) layer.biases[o] += operand.values[o];
+      if (!scales) continue;
+      layer.biases[o] *= operand.values[o];
+      for (std::size_t i = 0; i < inputs; ++i) layer.weights[o * inputs + i] *= operand.values[o];
+    }
+    scaled_output_ = true;
+    shifted_output_ = shifts;
+  }
+
   const OnnxGraph& graph_;
   const std::string& name_;
   const NetworkDesign& design_;
   std::string value_;  // what the next node goes on from
+  int width_ = 0;      // inputs; 0: not known yet
   std::vector<Layer> layers_;
   Scaling scaling_;
   bool shifted_input_ = false, scaled_input_ = false, scaled_output_ = false, shifted_output_ = false;
@@ -255,12 +303,23 @@ std::shared_ptr<const OnnxNetwork> OnnxNetwork::Parse(std::string_view bytes, co
   chain.Walk();
   std::shared_ptr<OnnxNetwork> network(new OnnxNetwork());
   network->hidden_ = chain.Hidden();
-  ModelData data;
-  data.weights = chain.Weights();
-  data.scaling = chain.scaling();
-  if (const std::optional<Scaling> kept = KeptScaling(graph, chain.scaling(), name)) data.scaling = *kept;
-  const NetworkDesign own{design.name, design.features, design.states, network->hidden_};
-  network->model_ = std::make_unique<const Model>(own, std::move(data));
+  const auto model_of = [&](int output, const Scaling& scaling) {
+    const NetworkDesign own{design.name, design.features.first(static_cast<std::size_t>(chain.width())),
+                            design.states, network->hidden_};
+    ModelData data;
+    data.weights = chain.Weights(output);
+    data.scaling = scaling;
+    return Model(own, std::move(data));
+  };
+  if (chain.Decides()) {
+    std::vector<Model> values;
+    for (int output = 0; output < design.decision; ++output)
+      values.push_back(model_of(output, chain.scaling()));
+    network->direct_ = std::make_unique<const DirectNetwork>(std::move(values));
+  } else {
+    const std::optional<Scaling> kept = KeptScaling(graph, chain.scaling(), name);
+    network->scores_ = std::make_unique<const Model>(model_of(0, kept ? *kept : chain.scaling()));
+  }
   Sha256 sha;
   sha.Update(bytes);
   network->sha256_ = sha.Hex();
@@ -272,45 +331,101 @@ std::shared_ptr<const OnnxNetwork> OnnxNetwork::Read(const std::string& path, co
   return Parse(ReadFile(path, kMostBytes), fmt::format("{}: {}", key, path), design);
 }
 
+namespace {
+
+// A graph that grows node by node behind one input.
+class ChainWriter {
+ public:
+  ChainWriter(const NetworkDesign& design, const std::string& input, const std::string& output)
+      : value_(input) {
+    graph_.inputs = {input};
+    graph_.outputs = {output};
+    graph_.metadata["ed3r.features"] = fmt::format("{}", fmt::join(design.features, " "));
+  }
+
+  void Add(const std::string& op, const std::string& name, std::vector<std::string> operands) {
+    operands.insert(operands.begin(), value_);
+    value_ = name + "_out";
+    graph_.nodes.push_back({op, name, std::move(operands), {value_}, {}});
+  }
+
+  // With an operand of one row.
+  void Add(const std::string& op, const std::string& name, const std::string& operand,
+           std::vector<float> values) {
+    graph_.tensors[operand] = {{static_cast<std::int64_t>(values.size())}, std::move(values)};
+    Add(op, name, {operand});
+  }
+
+  void AddLayer(std::size_t number, OnnxTensor weights, OnnxTensor biases, bool transposed, bool relu) {
+    const std::string w = fmt::format("weights_{}", number), b = fmt::format("biases_{}", number);
+    graph_.tensors[w] = std::move(weights);
+    graph_.tensors[b] = std::move(biases);
+    Add("Gemm", fmt::format("layer_{}", number), {w, b});
+    graph_.nodes.back().numbers["transB"] = transposed ? 1 : 0;
+    if (relu) Add("Relu", fmt::format("relu_{}", number), {});
+  }
+
+  std::string Bytes(int inputs, const std::string& name, int outputs) {
+    graph_.nodes.back().outputs = graph_.outputs;
+    return OnnxGraphBytes(graph_, inputs, name, outputs);
+  }
+
+  OnnxGraph& graph() { return graph_; }
+
+ private:
+  OnnxGraph graph_;
+  std::string value_;  // what the next node goes on from
+};
+
+}  // namespace
+
 std::string OnnxBytes(const Model& model) {
   const Scaling& scaling = model.data().scaling;
   const DenseShape shape = ShapeOf(model.design());
-  OnnxGraph graph;
-  graph.inputs = {"state_and_action"};
-  graph.outputs = {"reward"};
-  graph.metadata[kScalingKey] = ScalingText(scaling);
-  graph.metadata["ed3r.features"] = fmt::format("{}", fmt::join(model.design().features, " "));
-  std::string value = graph.inputs.front();
-  const auto add = [&](const std::string& op, const std::string& name, std::vector<std::string> operands) {
-    operands.insert(operands.begin(), value);
-    value = name + "_out";
-    graph.nodes.push_back({op, name, std::move(operands), {value}, {}});
-  };
-  const auto width = static_cast<std::int64_t>(shape.inputs());
-  graph.tensors["mean"] = {{width}, {scaling.input_mean.begin(), scaling.input_mean.end()}};
+  ChainWriter writer(model.design(), "state_and_action", "reward");
+  writer.graph().metadata[kScalingKey] = ScalingText(scaling);
   std::vector<float> inverse(scaling.input_sd.size());
   std::transform(scaling.input_sd.begin(), scaling.input_sd.end(), inverse.begin(), Inverse);
-  graph.tensors["inverse_sd"] = {{width}, std::move(inverse)};
-  add("Sub", "centre", {"mean"});
-  add("Mul", "scale", {"inverse_sd"});
+  writer.Add("Sub", "centre", "mean", {scaling.input_mean.begin(), scaling.input_mean.end()});
+  writer.Add("Mul", "scale", "inverse_sd", std::move(inverse));
   const float* flat = model.data().weights.data();
   for (int layer = 0; layer < shape.layers; ++layer) {
     const int inputs = shape.sizes[layer], outputs = shape.sizes[layer + 1];
-    const std::string w = fmt::format("weights_{}", layer), b = fmt::format("biases_{}", layer);
-    graph.tensors[w] = {{outputs, inputs}, {flat, flat + inputs * outputs}};
+    OnnxTensor weights{{outputs, inputs}, {flat, flat + inputs * outputs}};
     flat += inputs * outputs;
-    graph.tensors[b] = {{outputs}, {flat, flat + outputs}};
+    OnnxTensor biases{{outputs}, {flat, flat + outputs}};
     flat += outputs;
-    add("Gemm", fmt::format("layer_{}", layer), {w, b});
-    graph.nodes.back().numbers["transB"] = 1;
-    if (layer + 1 < shape.layers) add("Relu", fmt::format("relu_{}", layer), {});
+    writer.AddLayer(static_cast<std::size_t>(layer), std::move(weights), std::move(biases), true,
+                    layer + 1 < shape.layers);
   }
-  graph.tensors["reward_sd"] = {{1}, {static_cast<float>(scaling.target_sd)}};
-  graph.tensors["reward_mean"] = {{1}, {static_cast<float>(scaling.target_mean)}};
-  add("Mul", "unscale", {"reward_sd"});
-  add("Add", "uncentre", {"reward_mean"});
-  graph.nodes.back().outputs = graph.outputs;
-  return OnnxGraphBytes(graph, shape.inputs(), std::string(model.design().name));
+  writer.Add("Mul", "unscale", "reward_sd", {static_cast<float>(scaling.target_sd)});
+  writer.Add("Add", "uncentre", "reward_mean", {static_cast<float>(scaling.target_mean)});
+  return writer.Bytes(shape.inputs(), std::string(model.design().name), 1);
+}
+
+std::string OnnxBytes(const DenseChain& chain, const std::string& name, const NetworkDesign& design) {
+  const std::size_t layers = chain.weights.size();
+  if (layers == 0 || chain.biases.size() != layers)
+    throw UserError(
+        fmt::format("{}: has {} layers of weights and {} of biases; allowed: as many of each, 1 or more",
+                    name, layers, chain.biases.size()));
+  for (const OnnxTensor& weights : chain.weights)
+    if (weights.dims.size() != 2 || weights.values.empty())
+      throw UserError(fmt::format("{}: has weights of {} dimensions; allowed: inputs x outputs", name,
+                                  weights.dims.size()));
+  const std::int64_t inputs = chain.weights.front().dims[0], outputs = chain.weights.back().dims[1];
+  const bool decides = inputs == design.states;
+  NetworkDesign seen = design;
+  if (decides) seen.features = design.features.first(static_cast<std::size_t>(design.states));
+  ChainWriter writer(seen, decides ? "state" : "state_and_action", decides ? "decision" : "score");
+  if (!chain.mean.empty()) writer.Add("Sub", "centre", "mean", chain.mean);
+  if (!chain.inverse_sd.empty()) writer.Add("Mul", "scale", "inverse_sd", chain.inverse_sd);
+  for (std::size_t l = 0; l < layers; ++l)
+    writer.AddLayer(l, chain.weights[l], chain.biases[l], false, l + 1 < layers);
+  std::string bytes =
+      writer.Bytes(static_cast<int>(inputs), std::string(design.name), static_cast<int>(outputs));
+  OnnxNetwork::Parse(bytes, name, design);
+  return bytes;
 }
 
 }  // namespace ed3r

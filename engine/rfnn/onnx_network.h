@@ -1,11 +1,16 @@
-// Networks of the user's own: ONNX files that score an action, as the networks that a run trains do.
+// Networks of the user's own: ONNX files that score an action, as the networks that a run trains do, or that decide.
 //
-// The graph is one chain from one input of [n, 13] floats for the RC or [n, 11] for the robot, in the order and the units
-// of features.h, to one output of [n, 1]: the predicted reward, or anything else of which more is better:
+// The graph is one chain from one input to one output, the inputs raw, in the order and the units of features.h:
 //
-//   (x - mean) / sd     optional: Sub with 13 (11) values, then Div, or Mul by the inverses
+//            scores an action   decides (direct_network.h)
+//   RC       [n, 13] to [n, 1]  [n, 8] to [n, 5]: dx_m, dy_m, dz_m, turn_rad, tilt_command_rad, cut to the ranges in force
+//   robot    [n, 11] to [n, 1]  [n, 9] to [n, 3]: how much it likes offload, Full, Quantized
+//
+// A score is the predicted reward, or anything else of which more is better. The chain:
+//
+//   (x - mean) / sd     optional: Sub with a value for each input, then Div, or Mul by the inverses
 //   Gemm | MatMul, Add  a dense layer, alpha = beta = 1; after each but the last a Relu
-//   y sd + mean         optional: Mul by one value > 0, then Add of one
+//   y sd + mean         optional: Mul by one value > 0, then Add of one; of a decision by one value each, of any sign
 //
 // with Identity anywhere; at most kMaxDenseLayers layers of at most 65536 neurons. That is what torch.onnx.export makes of
 // nn.Sequential(nn.Linear, nn.ReLU, ...). Everything else is refused with the node that does not fit. Such a network runs
@@ -17,7 +22,9 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/rfnn/direct_network.h"
 #include "engine/rfnn/model.h"
+#include "engine/rfnn/onnx_graph.h"
 
 namespace ed3r {
 
@@ -29,7 +36,9 @@ class OnnxNetwork {
   static std::shared_ptr<const OnnxNetwork> Read(const std::string& path, const std::string& key,
                                                  const NetworkDesign& design);
 
-  const Model& model() const { return *model_; }
+  // One of the two; the other is null.
+  const Model* scores() const { return scores_.get(); }
+  const DirectNetwork* direct() const { return direct_.get(); }
   const std::string& sha256() const { return sha256_; }  // of the file
 
   OnnxNetwork(const OnnxNetwork&) = delete;
@@ -38,13 +47,24 @@ class OnnxNetwork {
  private:
   OnnxNetwork() = default;
 
-  std::vector<int> hidden_;  // the model's design refers to it
-  std::unique_ptr<const Model> model_;
+  std::vector<int> hidden_;  // the models' designs refer to it
+  std::unique_ptr<const Model> scores_;
+  std::unique_ptr<const DirectNetwork> direct_;
   std::string sha256_;
 };
 
 // A network as an ONNX file of this form (opset 13). The means and deviations that the engine keeps in double precision
 // are also in the file's metadata ("ed3r.scaling"), so that Parse gives the same choices, bit for bit.
 std::string OnnxBytes(const Model& model);
+
+// A network of numbers from elsewhere. Layer l maps x to x weights[l] + biases[l], with a Relu between layers.
+struct DenseChain {
+  std::vector<float> mean, inverse_sd;  // of the inputs; empty: the inputs go in as they are
+  std::vector<OnnxTensor> weights;      // inputs x outputs
+  std::vector<OnnxTensor> biases;
+};
+
+// The chain as an ONNX file of this form. Throws UserError, as Parse, for one that Parse would refuse.
+std::string OnnxBytes(const DenseChain& chain, const std::string& name, const NetworkDesign& design);
 
 }  // namespace ed3r

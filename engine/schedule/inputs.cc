@@ -101,11 +101,20 @@ void Inputs::AddNetworks(const Config& config) {
 }
 
 Networks Inputs::NetworksOf(const Config& config) const {
-  const auto find = [](const auto& networks, const std::string& file) -> const Model* {
+  const auto find = [](const auto& networks, const std::string& file) -> const OnnxNetwork* {
     const auto found = networks.find(file);
-    return found == networks.end() ? nullptr : &found->second->model();
+    return found == networks.end() ? nullptr : found->second.get();
   };
-  return {find(rc_networks_, config.networks.rc), find(robot_networks_, config.networks.robot)};
+  Networks own;
+  if (const OnnxNetwork* rc = find(rc_networks_, config.networks.rc)) {
+    own.rc = rc->scores();
+    own.direct_rc = rc->direct();
+  }
+  if (const OnnxNetwork* robot = find(robot_networks_, config.networks.robot)) {
+    own.robot = robot->scores();
+    own.direct_robot = robot->direct();
+  }
+  return own;
 }
 
 const Scene& Inputs::SceneOf(const Config& config) const { return *scenes_.at(config.mission.world); }

@@ -97,6 +97,8 @@ MissionTask TaskOf(const SweepPlan& plan, const Inputs& inputs, const NetworkShe
   const Networks own = inputs.NetworksOf(arm.config);
   if (own.rc != nullptr) task.networks.rc = own.rc;
   if (own.robot != nullptr) task.networks.robot = own.robot;
+  task.networks.direct_rc = own.direct_rc;
+  task.networks.direct_robot = own.direct_robot;
   return task;
 }
 

@@ -43,6 +43,16 @@ class InTwoStages:
         return info["timestep"] % 3
 
 
+# A decision of one layer whose products and sums are exact: climbs where it saw something, turns, looks 0.125 rad down.
+CLIMB = np.zeros((8, 5), np.float32)
+CLIMB[6, 2] = 8.0
+TURN = np.array([0, 0, 0, 0.5, 0.125], np.float32)
+
+
+def climbing(obs, info):
+    return np.concatenate([obs @ CLIMB + TURN, np.full((len(obs), 1), ed3r.QUANTIZED)], axis=1)
+
+
 def short_sighted(obs, info):
     return np.zeros((len(obs), 5))
 
@@ -232,6 +242,30 @@ class PythonTest(unittest.TestCase):
             looks = database.execute("SELECT count(*) FROM named_timesteps WHERE execution = 'quantized'").fetchone()
         self.assertEqual(seen, list(zip(words, run.missions()["total_j"])))
         self.assertEqual(looks[0], (steps["execution"] == "quantized").sum())
+
+    def test_a_network_that_decides_flies_as_its_policy(self):
+        ed3r.save_network(self.root / "climb.onnx", "rc", [CLIMB], [TURN])
+        sweep = self.root / "two.yaml"
+        sweep.write_text(SWEEP.format(world=SOURCE / "sweeps" / "worlds" / "paper.yaml").replace(
+            "strategy: rbs", "strategy: ablation-2, networks.rc: climb.onnx"), encoding="utf-8")
+        run = ed3r.fly(sweep, climbing, self.root / "decided")
+        mine, network = run.steps("mine"), run.steps("rbs")
+        for name in ("k", "command_dz_m", "command_turn_rad", "x_m", "z_m", "scs", "execution", "total_j", "reward"):
+            np.testing.assert_array_equal(mine[name], network[name])
+        self.assertGreater(np.ptp(mine["command_dz_m"]), 0)  # it saw something somewhere
+        rules = {run.codes["motion_rule"][rule] for rule in network["motion_rule"]}
+        self.assertTrue({"commanded"} <= rules <= {"commanded", "hover"}, rules)
+
+    def test_networks_that_no_sweep_takes_are_not_written(self):
+        path = self.root / "bad.onnx"
+        for agent, weights, refusal in (("rc", CLIMB[:7], "takes 7 values; allowed: 13"),
+                                        ("robot", CLIMB, "takes 8 values; allowed: 11"),
+                                        ("both", CLIMB, "agent: 'both'"), ("rc", CLIMB * np.nan, "not finite")):
+            with self.assertRaisesRegex(ed3r.UserError, refusal):
+                ed3r.save_network(path, agent, [weights], [TURN])
+        self.assertFalse(path.exists())
+        with self.assertRaisesRegex(ValueError, "arm 'mine' of strategy external needs one"):
+            ed3r.fly(self.sweep, out=self.root / "none")
 
     def test_bad_input_is_one_line(self):
         with self.assertRaisesRegex(ed3r.UserError, "arm: 'mien' is not in the sweep.*did you mean mine"):

@@ -58,9 +58,9 @@ TEST(OnnxNetworkTest, AnExportComesBackBitForBit) {
   for (const NetworkDesign* design : {&kRcNetwork, &kRobotNetwork}) {
     const Model model = RandomModel(*design);
     const auto back = OnnxNetwork::Parse(OnnxBytes(model), "export", *design);
-    EXPECT_EQ(back->model().data().weights, model.data().weights);
-    EXPECT_EQ(NetworkHash(back->model()), NetworkHash(model));
-    EXPECT_EQ(OnnxBytes(back->model()), OnnxBytes(model));
+    EXPECT_EQ(back->scores()->data().weights, model.data().weights);
+    EXPECT_EQ(NetworkHash(*back->scores()), NetworkHash(model));
+    EXPECT_EQ(OnnxBytes(*back->scores()), OnnxBytes(model));
   }
 }
 
@@ -72,7 +72,8 @@ TEST(OnnxNetworkTest, WithoutTheMetadataItDiffersByRoundingAlone) {
   Model::Workspace workspace;
   const std::vector<double> state(8, 900.0);
   const std::vector<float> action(5, 800.0F);
-  EXPECT_NEAR(back->model().Predict(state, action, workspace), model.Predict(state, action, workspace), 1e-2);
+  EXPECT_NEAR(back->scores()->Predict(state, action, workspace), model.Predict(state, action, workspace),
+              1e-2);
 }
 
 TEST(OnnxNetworkTest, MatMulAndAddAreALayer) {
@@ -80,8 +81,8 @@ TEST(OnnxNetworkTest, MatMulAndAddAreALayer) {
   Model::Workspace workspace;
   std::vector<double> state(8, 0.0);
   state[0] = 3.0;
-  EXPECT_EQ(network->model().Predict(state, std::vector<float>{-1, 0, 0, 0, 0}, workspace), 3.5 + 20.0);
-  EXPECT_EQ(network->model().Predict(state, std::vector<float>{+1, 0, 0, 0, 0}, workspace), 3.5);
+  EXPECT_EQ(network->scores()->Predict(state, std::vector<float>{-1, 0, 0, 0, 0}, workspace), 3.5 + 20.0);
+  EXPECT_EQ(network->scores()->Predict(state, std::vector<float>{+1, 0, 0, 0, 0}, workspace), 3.5);
 }
 
 TEST(OnnxNetworkTest, WhatDoesNotFitIsRefusedByName) {
@@ -95,7 +96,9 @@ TEST(OnnxNetworkTest, WhatDoesNotFitIsRefusedByName) {
   EXPECT_NE(RefusalOf(BytesOf(graph)).find("gives 2 values; allowed: one"), std::string::npos);
   graph = SmallGraph();
   graph.tensors["w1"] = {{12, 2}, std::vector<float>(24)};
-  EXPECT_NE(RefusalOf(BytesOf(graph)).find("takes 12 values and gives 2; 13 come"), std::string::npos);
+  EXPECT_NE(
+      RefusalOf(BytesOf(graph)).find("takes 12 values; allowed: 13 (it scores an action) or 8 (it decides)"),
+      std::string::npos);
   graph = SmallGraph();
   graph.nodes.erase(graph.nodes.begin() + 2);
   graph.nodes[2].inputs[0] = "hb";
@@ -111,6 +114,76 @@ TEST(OnnxNetworkTest, WhatDoesNotFitIsRefusedByName) {
   graph.metadata["ed3r.scaling"] = "1 2 3";
   EXPECT_NE(RefusalOf(BytesOf(graph)).find("do not fit its tensors"), std::string::npos);
   EXPECT_NE(RefusalOf("not a network").find("is no ONNX model"), std::string::npos);
+}
+
+// h = relu(x w1 + b1), y = h w2 + b2, of 8 inputs and 5 values.
+DenseChain SmallDecision() {
+  OnnxTensor w1{{8, 2}, std::vector<float>(16, 0.0F)};
+  w1.values[2 * 6] = 2.0F;       // neuron 0: 2 x the previous score
+  w1.values[2 * 3 + 1] = -1.0F;  // neuron 1: -yaw
+  const OnnxTensor w2{{2, 5}, {1, 2, 3, 4, 5, 10, 0, 0, 0, 0}};
+  return {{}, {}, {w1, w2}, {{{2}, {0.0F, 0.5F}}, {{5}, {0, 0, 0, -1, 0.25F}}}};
+}
+
+std::vector<double> DecisionOf(const OnnxNetwork& network, double yaw_rad, double previous_scs) {
+  Model::Workspace workspace;
+  std::vector<double> values(network.direct()->values());
+  std::vector<double> state(8, 0.0);
+  state[kRcYaw] = yaw_rad;
+  state[kRcPreviousScs] = previous_scs;
+  network.direct()->Decide(state, values, workspace);
+  return values;
+}
+
+TEST(OnnxNetworkTest, EightInputsDecide) {
+  const auto network = OnnxNetwork::Parse(OnnxBytes(SmallDecision(), "mine", kRcNetwork), "mine", kRcNetwork);
+  ASSERT_EQ(network->scores(), nullptr);
+  EXPECT_EQ(DecisionOf(*network, 0.25, 0.5), (std::vector<double>{1 + 2.5, 2, 3, 4 - 1, 5.25}));
+  EXPECT_EQ(DecisionOf(*network, 1.0, 0.0),
+            (std::vector<double>{0, 0, 0, -1, 0.25}));  // both neurons at rest
+}
+
+TEST(OnnxNetworkTest, TheInputsOfADecisionAreScaled) {
+  DenseChain chain = SmallDecision();
+  chain.mean.assign(8, 0.25F);
+  chain.inverse_sd.assign(8, 2.0F);
+  const auto network = OnnxNetwork::Parse(OnnxBytes(chain, "mine", kRcNetwork), "mine", kRcNetwork);
+  EXPECT_EQ(DecisionOf(*network, 0.25, 0.5), (std::vector<double>{1 + 5.0, 2, 3, 4 - 1, 5.25}));
+}
+
+TEST(OnnxNetworkTest, TheValuesOfADecisionAreScaled) {
+  OnnxGraph graph = ParseOnnxGraph(OnnxBytes(SmallDecision(), "mine", kRcNetwork), "mine");
+  graph.tensors["times"] = {{5}, {1, -1, 1, 1, 2}};
+  graph.tensors["plus"] = {{5}, {0, 0, 100, 0, 1}};
+  graph.nodes.push_back({"Mul", "times", {"decision", "times"}, {"t"}, {}});
+  graph.nodes.push_back({"Add", "plus", {"t", "plus"}, {"p"}, {}});
+  graph.outputs = {"p"};
+  const auto network = OnnxNetwork::Parse(OnnxGraphBytes(graph, 8, "test", 5), "mine", kRcNetwork);
+  EXPECT_EQ(DecisionOf(*network, 0.25, 0.5), (std::vector<double>{3.5, -2, 103, 3, 11.5}));
+  graph.tensors["times"] = {{1}, {2}};
+  EXPECT_NE(RefusalOf(OnnxGraphBytes(graph, 8, "test", 5)).find("has 1 values for 5 outputs"),
+            std::string::npos);
+}
+
+TEST(OnnxNetworkTest, ADecisionOfTheWrongWidthIsRefused) {
+  const auto refusal = [](const DenseChain& chain, const NetworkDesign& design) -> std::string {
+    try {
+      OnnxBytes(chain, "mine.onnx", design);
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  DenseChain chain = SmallDecision();
+  EXPECT_EQ(refusal(chain, kRcNetwork), "accepted");
+  EXPECT_EQ(refusal(chain, kRobotNetwork),
+            "mine.onnx: takes 8 values; allowed: 11 (it scores an action) or 9 (it decides)");
+  chain.weights[1] = {{2, 4}, std::vector<float>(8)};
+  chain.biases[1] = {{4}, std::vector<float>(4)};
+  EXPECT_EQ(refusal(chain, kRcNetwork), "mine.onnx: gives 4 values of 8; allowed: 5, its decision");
+  chain.biases.pop_back();
+  EXPECT_EQ(refusal(chain, kRcNetwork),
+            "mine.onnx: has 2 layers of weights and 1 of biases; allowed: as many of each, 1 or more");
 }
 
 TEST(OnnxNetworkTest, EveryCutIsRefused) {

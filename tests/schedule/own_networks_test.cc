@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "engine/core/check.h"
@@ -77,7 +78,7 @@ TEST_F(OwnNetworksTest, TheyFlyAsTheNetworksThatWereExported) {
     const StoredMission stored = reader.LoadMission({0, 0, mission});
     MissionTask task = TaskOf(plan, inputs, nullptr, {0, 0, mission});
     EXPECT_NE(task.networks.rc, nullptr);
-    task.networks = {&rc_, &robot_};
+    task.networks.rc = &rc_, task.networks.robot = &robot_;
     EXPECT_EQ(DigestOf(FlyMission(task)), DigestOf(stored.record));
     for (const TimestepRecord& step : stored.record.steps)
       greedy = greedy || step.motion_rule == static_cast<std::int64_t>(MotionRule::kGreedy);
@@ -93,9 +94,49 @@ TEST_F(OwnNetworksTest, WhatIsMissingIsSaid) {
   EXPECT_NE(RefusalOf("strategy: rbs, networks.rc: rc.onnx").find("strategy rbs asks no such network"),
             std::string::npos);
   const std::string refusal = RefusalOf("strategy: ablation-2, networks.rc: robot.onnx");
-  EXPECT_NE(refusal.find("11 values for 13 inputs"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("takes 11 values; allowed: 13"), std::string::npos) << refusal;
   EXPECT_NE(RefusalOf("strategy: ablation-2, networks.rc: none.onnx").find("'trained' is allowed too"),
             std::string::npos);
+}
+
+// A network that decides: turns by 0.6 rad and looks 0.1 rad down, whatever it sees; on board it likes Full least and
+// offloading most.
+TEST_F(OwnNetworksTest, TheyMayDecideThemselves) {
+  const auto constant = [](std::int64_t inputs, std::vector<float> values) {
+    const auto outputs = static_cast<std::int64_t>(values.size());
+    const OnnxTensor weights{{inputs, outputs},
+                             std::vector<float>(static_cast<std::size_t>(inputs * outputs))};
+    return DenseChain{{}, {}, {weights}, {{{outputs}, std::move(values)}}};
+  };
+  WriteFile(folder_ / "turn.onnx", OnnxBytes(constant(8, {0, 0, 0, 0.6F, 0.1F}), "turn", kRcNetwork));
+  WriteFile(folder_ / "liked.onnx", OnnxBytes(constant(9, {3, 1, 2}), "liked", kRobotNetwork));
+  for (const auto& [strategy, execution] :
+       {std::pair{"ed3r", Execution::kOffload}, std::pair{"ablation-3", Execution::kQuantized}}) {
+    const SweepPlan plan =
+        Plan(std::string("strategy: ") + strategy + ", networks: {rc: turn.onnx, robot: liked.onnx}");
+    EXPECT_FALSE(NeedsNetworks(plan));
+    const Inputs inputs(plan);
+    EXPECT_TRUE(inputs.Fingerprints(plan).contains("network turn.onnx"));
+    const MissionRecord record = FlyMission(TaskOf(plan, inputs, nullptr, {0, 0, 0}));
+    int commanded = 0;
+    for (const TimestepRecord& step : record.steps) {
+      EXPECT_EQ(step.execution, static_cast<std::int64_t>(execution));
+      if (step.motion_rule != static_cast<std::int64_t>(MotionRule::kCommanded)) continue;
+      ++commanded;
+      EXPECT_EQ(step.command_dx_m, 0.0);
+      EXPECT_EQ(step.epsilon, 0.0);
+      EXPECT_TRUE(std::isnan(step.rc_predicted_reward));
+      EXPECT_LE(step.command_turn_rad, static_cast<double>(0.6F));
+    }
+    EXPECT_GT(commanded, 0);
+    EXPECT_EQ(record.steps.front().command_turn_rad, static_cast<double>(0.6F));
+    EXPECT_EQ(record.steps.front().command_tilt_rad, static_cast<double>(0.1F));
+  }
+  const std::string refusal = RefusalOf("strategy: ablation-2, networks.rc: liked.onnx");
+  EXPECT_NE(refusal.find("networks.rc: "), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("takes 9 values; allowed: 13 (it scores an action) or 8 (it decides)"),
+            std::string::npos)
+      << refusal;
 }
 
 // Arms of strategy external are flown by a program alone.

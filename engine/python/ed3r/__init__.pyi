@@ -101,10 +101,12 @@ class TwoStagePolicy(Protocol):
 
 Policy = Callable[[NDArray[np.float32], dict[str, Any]], ArrayLike] | TwoStagePolicy
 
-def fly(sweep: str | os.PathLike[str], policy: Policy | Mapping[str, Policy], out: str | os.PathLike[str] | None = None, *,
-        seed: int | None = None, missions: int | None = None, settings: Sequence[str] = (), num_envs: int = 64,
-        threads: int = 0, version: str | None = None, cache: str = "results/cache") -> "Run":
-    """Flies what is missing of a sweep, as 'ed3r run' does; its arms of `strategy: external` decide by `policy`.
+def fly(sweep: str | os.PathLike[str], policy: Policy | Mapping[str, Policy] | None = None,
+        out: str | os.PathLike[str] | None = None, *, seed: int | None = None, missions: int | None = None,
+        settings: Sequence[str] = (), num_envs: int = 64, threads: int = 0, version: str | None = None,
+        cache: str = "results/cache") -> "Run":
+    """Flies what is missing of a sweep, as 'ed3r run' does; its arms of `strategy: external` decide by `policy`, which others
+    do not need.
 
     policy(obs, info) gets obs (n, 8) and info of n <= num_envs missions and returns actions (n, 6), as of VectorEnv. info:
     mission, timestep, hovers, scs, total_j, battery_j (n,), ranges (n, 3). Missions come and go between calls: what a policy
@@ -115,6 +117,19 @@ def fly(sweep: str | os.PathLike[str], policy: Policy | Mapping[str, Policy], ou
     Results go to `out` (results/runs/SWEEP) as ordinary missions: reports, pairing by scenario and comparisons know no
     difference. A second call continues; by another policy it is refused. `version` tells policies apart; without it the
     SHA-256 of the policy's source does, so give one where it depends on more than its source (weights, a closure).
+    """
+
+def save_network(path: str | os.PathLike[str], agent: str, weights: Sequence[ArrayLike], biases: Sequence[ArrayLike], *,
+                 mean: ArrayLike | None = None, sd: ArrayLike | None = None) -> None:
+    """Writes an ONNX network for networks.rc (agent "rc") or networks.robot ("robot") of a sweep.
+
+    Layer l is x @ weights[l] + biases[l], weights inputs x outputs, as scikit-learn's coefs_ and intercepts_ (PyTorch's
+    Linear: weight.T), with a Relu between layers. mean, sd: of the raw inputs, which go in as (x - mean) / sd; an sd of 0
+    leaves an input out. A target's scale belongs into the last layer.
+
+    It scores actions, of which the agent takes the best: 13 inputs for the rc, 11 for the robot, 1 output. Or it decides:
+    8 inputs (VectorEnv's observation) to dx_m, dy_m, dz_m, turn_rad, tilt_rad; 9 inputs (robot_obs) to how much it likes
+    offload, full, quantized. UserError for anything else.
     """
 
 class Run:

@@ -16,6 +16,8 @@ def _identity(policy, version):
     """What tells this policy from others: a run is continued by the same one alone."""
     if version is not None:
         return str(version)
+    if policy is None:
+        return "none"
     policies = policy if isinstance(policy, dict) else {"": policy}
     sources = []
     for name, decide in sorted(policies.items()):
@@ -30,6 +32,8 @@ def _identity(policy, version):
 
 
 def _policy_of(policy, arm):
+    if policy is None:
+        raise ValueError(f"policy: arm '{arm}' of strategy external needs one")
     if not isinstance(policy, dict):
         return policy
     if arm not in policy:
@@ -63,7 +67,7 @@ def _drive(fleet, policy):
         fleet.detect(executions)
 
 
-def fly(sweep, policy, out=None, *, seed=None, missions=None, settings=(), num_envs=64, threads=0, version=None,
+def fly(sweep, policy=None, out=None, *, seed=None, missions=None, settings=(), num_envs=64, threads=0, version=None,
         cache="results/cache"):
     """Flies what is missing of a sweep, its arms of strategy external by `policy`; see the stub."""
     request = _core.SweepRequest(str(sweep), list(settings), seed, missions)
