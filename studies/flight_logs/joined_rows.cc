@@ -16,6 +16,17 @@ bool OnGround(const TimeSeries& armed, const TimeSeries& landed, double time_s) 
   return !landed.empty() && landed.Last(time_s, 1.0 - landed.value(0)) >= 0.5;
 }
 
+// Samples out of order by a moment are passed over; a clock that starts again would put two flights into one.
+void CheckClock(const std::string& path, const Battery& battery) {
+  const TimeSeries& clock = battery.voltage_v;
+  if (clock.back_s() <= kMaxJoinS) return;
+  throw UserError(
+      fmt::format("{}: the clock of {} runs back from {:.3f} to {:.3f} s: a restart, or two logs in one "
+                  "file; give each log as a "
+                  "file of its own",
+                  path, battery.source, clock.back_from_s(), clock.back_from_s() - clock.back_s()));
+}
+
 constexpr double kMinFlightS = 5.0;  // less is a motor test or a bench
 
 [[noreturn]] void FailOnGround(const std::string& path, const TimeSeries& armed, double air_s, double begin_s,
@@ -71,7 +82,10 @@ void CheckAnyFlight(const std::string& path, const TimeSeries& clock, const Time
 ChosenBattery BatteryInFlight(const std::string& path, const std::map<int, Battery>& batteries,
                               const TimeSeries& armed, const TimeSeries& landed, const LogReading& reading) {
   std::vector<Battery> all;
-  for (const auto& [id, battery] : batteries) all.push_back(battery);
+  for (const auto& [id, battery] : batteries) {
+    CheckClock(path, battery);
+    all.push_back(battery);
+  }
   CheckPowerMeasured(path, all);
   CheckAnyFlight(path, all.front().voltage_v, armed, landed);
   return ChooseBattery(path, all, reading);

@@ -12,7 +12,14 @@ constexpr double kStampS = 1e-6;  // stamps are whole microseconds; closer is th
 }  // namespace
 
 void TimeSeries::Add(double time_s, double value) {
-  if (!std::isfinite(time_s) || (!times_s_.empty() && time_s <= times_s_.back())) return;
+  if (!std::isfinite(time_s)) return;
+  if (!times_s_.empty() && time_s <= times_s_.back()) {
+    if (times_s_.back() - time_s > back_s_) {
+      back_s_ = times_s_.back() - time_s;
+      back_from_s_ = times_s_.back();
+    }
+    return;
+  }
   times_s_.push_back(time_s);
   values_.push_back(value);
 }

@@ -17,6 +17,10 @@ class TimeSeries {
   // Samples come in the order of the file; a stamp that does not come after the one before is passed over.
   void Add(double time_s, double value);
 
+  // The farthest that a stamp passed over lies before the one before it, and that one; 0 where none does.
+  double back_s() const { return back_s_; }
+  double back_from_s() const { return back_from_s_; }
+
   bool empty() const { return times_s_.empty(); }
   std::size_t size() const { return times_s_.size(); }
   double time_s(std::size_t i) const { return times_s_[i]; }
@@ -29,6 +33,7 @@ class TimeSeries {
 
  private:
   std::vector<double> times_s_, values_;
+  double back_s_ = 0.0, back_from_s_ = 0.0;
 };
 
 }  // namespace ed3r

@@ -62,6 +62,14 @@ TEST(ArduPilotLogTest, JoinsMessagesOfDifferentRatesByTheNearestInTime) {
   EXPECT_DOUBLE_EQ(At(log, 100, "throttle_0_1000"), 400.0) << "the float 0.4 is 0.4";
 }
 
+// The second flight was passed over without a word, or mixed into the first where it lasted longer.
+TEST(ArduPilotLogTest, RefusesAClockThatStartsAgain) {
+  EXPECT_EQ(Complaint([] { ParseLog("two.bin", NewLog() + NewLog(), {}); }),
+            "two.bin: the clock of BAT instance 0 runs back from 39.900 to 0.000 s: a restart, or two logs "
+            "in one file; "
+            "give each log as a file of its own");
+}
+
 TEST(ArduPilotLogTest, TellsRowsOnTheGroundByItsEvents) {
   const LogTable log = ParseLog("new.bin", NewLog(), {});
   int flown = 0;

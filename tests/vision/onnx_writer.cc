@@ -18,7 +18,7 @@ std::string Value(const std::string& name, const std::vector<std::int64_t>& dims
   for (const std::int64_t dim : dims) {
     ProtobufWriter side;
     dim == kOpen ? side.Bytes(onnx::kDimName, "open")
-                 : side.Number(onnx::kDimValue, static_cast<std::uint64_t>(dim));
+                 : side.Number(onnx::kDimValue, static_cast<std::uint64_t>(dim == kOpenAsNumber ? -1 : dim));
     shape += Message(onnx::kShapeDim, side.bytes());
   }
   ProtobufWriter tensor;
@@ -55,6 +55,8 @@ std::string AttributeBytes(const OnnxAttribute& attribute) {
       out.Number(onnx::kAttributeInts, static_cast<std::uint64_t>(number));
     out.Number(onnx::kAttributeType, 7);
   }
+  if (const auto* text = std::get_if<std::string>(&attribute.value))
+    out.Bytes(onnx::kAttributeText, *text).Number(onnx::kAttributeType, 3);
   return out.bytes();
 }
 

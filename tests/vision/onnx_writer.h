@@ -10,10 +10,11 @@ namespace ed3r::test {
 
 struct OnnxAttribute {
   std::string name;
-  std::variant<std::int64_t, float, std::vector<std::int64_t>> value;
+  std::variant<std::int64_t, float, std::vector<std::int64_t>, std::string> value;
 };
 
-inline constexpr std::int64_t kOpen = -1;  // a side that is told when the model runs
+inline constexpr std::int64_t kOpen = -1;          // a side that is told when the model runs
+inline constexpr std::int64_t kOpenAsNumber = -2;  // the same as tf2onnx writes it: -1
 inline constexpr int kFloat = 1, kUint8 = 2, kInt64 = 7, kFloat16 = 10, kBfloat16 = 16;
 
 class OnnxWriter {

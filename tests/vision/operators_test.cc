@@ -94,6 +94,30 @@ TEST_F(Operators, GemmWithFactorsIsRefused) {
   ExpectRefusal("operator Gemm (node 'the Gemm') has an alpha or a beta that is not 1");
 }
 
+// OpenCV gave 0.74 for 0.68.
+TEST_F(Operators, QuantisedNumbersAreRefused) {
+  model_.Weights("scale", {}, {1.0F / 255.0F});
+  model_.Step("QuantizeLinear", {"frame", "scale"}, {"q"})
+      .Step("DequantizeLinear", {"q", "scale"}, {"frame2"});
+  model_.Step("GlobalAveragePool", {"frame2"}, {"means"}).Step("Flatten", {"means"}, {"y"});
+  ExpectRefusal("operator QuantizeLinear (node 'the QuantizeLinear') computes with quantised numbers");
+}
+
+// OpenCV pads the other side, and passes over the dilations of pools.
+TEST_F(Operators, WindowsThatOpenCvReadsOtherwiseAreRefused) {
+  using Numbers = std::vector<std::int64_t>;
+  const OnnxWriter empty = model_;
+  model_.Step(
+      "MaxPool", {"frame"}, {"m"},
+      {{"kernel_shape", Numbers{3, 3}}, {"strides", Numbers{2, 2}}, {"auto_pad", std::string("SAME_LOWER")}});
+  model_.Step("GlobalAveragePool", {"m"}, {"means"}).Step("Flatten", {"means"}, {"y"});
+  ExpectRefusal("has auto_pad = SAME_LOWER, which OpenCV takes for SAME_UPPER");
+  model_ = empty;
+  model_.Step("MaxPool", {"frame"}, {"m"}, {{"kernel_shape", Numbers{2, 2}}, {"dilations", Numbers{2, 2}}});
+  model_.Step("GlobalAveragePool", {"m"}, {"means"}).Step("Flatten", {"means"}, {"y"});
+  ExpectRefusal("has dilations, which OpenCV passes over in pools");
+}
+
 TEST_F(Operators, MatMulAndAdd) {
   Means().Weights("w", {3, 2}, {1, 2, 0, 1, 4, 0}).Weights("b", {2}, {0.25F, -0.5F});
   model_.Step("MatMul", {"flat", "w"}, {"m"}).Step("Add", {"m", "b"}, {"y"});

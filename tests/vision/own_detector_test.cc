@@ -125,6 +125,8 @@ TEST_F(OwnDetector, ChannelsMayStandLast) {
 TEST_F(OwnDetector, OpenSidesBecomeTheFrames) {
   EXPECT_NEAR(Answer(RedMinusBlue({kOpen, 3, kOpen, kOpen})), kExpected, 1e-6);
   EXPECT_NEAR(Answer(RedMinusBlue({kOpen, kOpen, kOpen, kOpen})), kExpected, 1e-6);
+  EXPECT_NEAR(Answer(RedMinusBlue({test::kOpenAsNumber, 3, test::kOpenAsNumber, test::kOpenAsNumber})),
+              kExpected, 1e-6);
   OnnxWriter viewed;
   viewed.Input("frame", {kOpen, 3, kOpen, kOpen}).Output("y", {kOpen, 2});
   viewed.Weights("w", {3, 2}, {4, 0, 0, 0, -4, 0}).Weights("b", {2}, {0.5F, -0.25F});

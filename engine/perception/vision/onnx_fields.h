@@ -27,6 +27,7 @@ enum AttributeField : std::uint32_t {
   kAttributeName = 1,
   kAttributeFloat = 2,
   kAttributeInt = 3,
+  kAttributeText = 4,
   kAttributeTensor = 5,
   kAttributeGraph = 6,
   kAttributeInts = 8,
@@ -62,6 +63,7 @@ enum ValueField : std::uint32_t {
 inline constexpr std::uint64_t kTypeOfFloat = 1, kTypeOfInt = 2, kTypeOfInts = 7;  // of attributes
 inline constexpr std::uint64_t kFloat = 1, kFloat16 = 10;
 inline constexpr std::uint64_t kLiesOutside = 1;  // of kLocation
+inline constexpr std::int64_t kOpenSide = -1;     // what some exporters write for a side that is left open
 
 // "float16"; "of the number 99" for what no version of the format has.
 std::string TypeName(std::uint64_t type);

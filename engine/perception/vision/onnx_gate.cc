@@ -179,6 +179,7 @@ class Gate {
           });
         });
     });
+    std::erase(dims, onnx::kOpenSide);
     Elements(dims, fmt::format("a value '{}'", name));
   }
 

@@ -17,9 +17,10 @@ namespace {
 struct Attribute {
   double number = 0.0;  // of one number
   std::vector<std::int64_t> numbers;
+  std::string text;
 };
 
-// A node with its attributes that are numbers.
+// A node with its attributes that are numbers or words.
 struct Step {
   std::string op, name;
   std::vector<std::string> inputs;
@@ -46,6 +47,12 @@ class Mender {
   }
 
   std::vector<std::string> Mended() const {
+    if (IsQuantised(step_.op))
+      Refuse(
+          "computes with quantised numbers, which OpenCV rounds and cuts off otherwise than the standard; "
+          "allowed: the "
+          "model of single or half precision, from before it was quantised");
+    CheckWindow();
     if (step_.op == "Gemm") return Gemm();
     if (step_.op == "AveragePool") CheckPadding();
     if (step_.op == "Clip" && step_.inputs.size() > 1) return {Clip()};
@@ -55,6 +62,11 @@ class Mender {
   }
 
  private:
+  static bool IsQuantised(std::string_view op) {
+    return op.starts_with("QLinear") || op.ends_with("QuantizeLinear") || op == "DequantizeLinear" ||
+           op.ends_with("Integer");
+  }
+
   [[noreturn]] void Refuse(const std::string& why) const {
     throw UserError(fmt::format("{}: operator {} (node '{}') {}", name_, step_.op, step_.name, why));
   }
@@ -71,12 +83,27 @@ class Mender {
       }
       if (field.number == onnx::kAttributeInt)
         attribute.number = static_cast<double>(static_cast<std::int64_t>(field.value));
+      if (field.number == onnx::kAttributeText && field.IsBytes()) attribute.text = field.bytes;
       if (field.number != onnx::kAttributeInts) return;
       if (!field.IsBytes()) attribute.numbers.push_back(static_cast<std::int64_t>(field.value));
       for (std::string_view packed = field.IsBytes() ? field.bytes : ""; !packed.empty();)
         attribute.numbers.push_back(static_cast<std::int64_t>(TakeVarint(packed, name_)));
     });
     step_.attributes[name] = std::move(attribute);
+  }
+
+  // Of convolutions and pools.
+  void CheckWindow() const {
+    const auto pad = step_.attributes.find("auto_pad");
+    if (pad != step_.attributes.end() && pad->second.text == "SAME_LOWER")
+      Refuse(
+          "has auto_pad = SAME_LOWER, which OpenCV takes for SAME_UPPER; allowed: SAME_UPPER, or pads in "
+          "numbers");
+    const auto dilations = step_.attributes.find("dilations");
+    if (step_.op.ends_with("Pool") && dilations != step_.attributes.end() &&
+        std::any_of(dilations->second.numbers.begin(), dilations->second.numbers.end(),
+                    [](std::int64_t dilation) { return dilation != 1; }))
+      Refuse("has dilations, which OpenCV passes over in pools; allowed: 1");
   }
 
   std::vector<std::string> Gemm() const {

@@ -44,6 +44,7 @@ OnnxDim DimOf(std::string_view bytes, const std::string& name) {
   OnnxDim dim;
   ForEachField(bytes, name, [&](const ProtobufField& field) {
     if (field.number == onnx::kDimValue) dim.size = static_cast<std::int64_t>(field.value);
+    if (dim.size == onnx::kOpenSide) dim.size = 0;
     if (field.number == onnx::kDimName && field.IsBytes()) dim.name = field.bytes;
   });
   return dim;
