@@ -137,6 +137,7 @@ int MakeReportOf(const ReportOptions& options) {
   if (folder.out.empty()) folder.out = options.dir + "/report";
   WatchedMissions watched;
   if (!options.no_missions) watched = WatchMissions(report, results, options.dir, options.cache);
+  folder.viewers_note = watched.note;
   for (const WatchedMission& mission : watched.list)
     folder.viewers.push_back({{"mission", mission.mission}, {"what", mission.what}, {"file", mission.file}});
   const FolderResult written = WriteReportFolder(report, results, folder);

@@ -1,5 +1,6 @@
 #include "engine/app/status_watch.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -7,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <thread>
 
 #include "engine/app/commands.h"
@@ -133,7 +135,10 @@ std::string StatusPage(const StatusLook& look, int seconds) {
       "<th>success, energy with 95 %</th></tr>\n",
       ended ? "" : fmt::format("<meta http-equiv=\"refresh\" content=\"{}\">", seconds), 100 * share,
       HtmlText(look.name), HtmlText(look.name), Summary(look),
-      ended ? "." : fmt::format("; this page shows itself anew every {} s.", seconds), share);
+      ended ? "."
+            : fmt::format("; as of {:%Y-%m-%d %H:%M:%S} UTC, this page shows itself anew every {} s.",
+                          fmt::gmtime(std::time(nullptr)), seconds),
+      share);
   for (const ArmStatus& arm : look.arms)
     page += fmt::format(
         "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",

@@ -211,6 +211,7 @@ Json MakePageData(const PageDataInputs& inputs) {
     data[part] = inputs.figures.at(part);
   data["run"] = RunJson(inputs);
   data["viewers"] = inputs.viewers;
+  data["viewers_note"] = inputs.viewers_note;
   return data;
 }
 

@@ -32,11 +32,12 @@ struct PageDataInputs {
   nlohmann::ordered_json broken = nlohmann::ordered_json::array();
   // Mission viewers beside the page: {"mission", "what", "file"}.
   nlohmann::ordered_json viewers = nlohmann::ordered_json::array();
+  std::string viewers_note = {};  // why there are none, though they were wanted
 };
 
 // {"format", "name", "question", "answer": [sentences], "departures": [sentences], "metrics", "arms", "slices", "histograms", "points", "failures",
 // "known_sites", "broken", "claims", "tables", "world", "missions_shown", "variants", "figures", "run": provenance for people,
-// "viewers"}; parts as in page_slices.h and figure_data.h. Pure.
+// "viewers", "viewers_note"}; parts as in page_slices.h and figure_data.h. Pure.
 nlohmann::ordered_json MakePageData(const PageDataInputs& inputs);
 
 }  // namespace ed3r

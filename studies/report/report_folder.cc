@@ -126,7 +126,8 @@ std::string InteractivePage(const WebBundle& bundle, const PageInputs& plain, co
                                                     .report_command = plain.report_command,
                                                     .figures_note = plain.figures_note,
                                                     .broken = BrokenMissions(reader),
-                                                    .viewers = options.viewers});
+                                                    .viewers = options.viewers,
+                                                    .viewers_note = options.viewers_note});
   return SelfContainedPage(plain.report.name + " – ED³R report", bundle, data, ReportContent(plain));
 }
 

@@ -15,6 +15,7 @@ struct FolderOptions {
   std::string command;  // that made it, for the page
   // Mission viewers that the caller leaves in the folder: {"mission", "what", "file"}.
   nlohmann::ordered_json viewers = nlohmann::ordered_json::array();
+  std::string viewers_note = {};  // why there are none, though they were wanted
 };
 
 struct FolderResult {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/app/command.h"
@@ -58,6 +59,21 @@ TEST_F(WatchTest, AViewerHoldsTheFlightAndItsDecisions) {
     const auto& steps = mission.at("steps");
     const std::size_t timesteps = steps.at("k").size();
     EXPECT_EQ(mission.at("decisions").size(), timesteps);
+    EXPECT_TRUE(mission.at("frames").is_null()) << "it looked at no pixels";
+    const double range_m = mission.at("lidar").at("range_m");
+    const auto& track = mission.at("track");
+    ASSERT_FALSE(mission.at("lidar").at("met").empty()) << "a robot below 30 m meets the ground";
+    for (const auto& met : mission.at("lidar").at("met")) {
+      const std::size_t at = met[0];
+      ASSERT_LT(at, track.at("t_s").size());
+      const double from[] = {track.at("x_m")[at], track.at("y_m")[at], track.at("z_m")[at]};
+      double square_m2 = 0.0;
+      for (int i = 0; i < 3; ++i) {
+        const double along_m = met[1 + i].get<double>() - from[i];
+        square_m2 += along_m * along_m;
+      }
+      EXPECT_LE(std::sqrt(square_m2), range_m + 0.2) << "given its rounding";
+    }
     EXPECT_NEAR(steps.at("begin_s").back().get<double>() + steps.at("duration_s").back().get<double>(),
                 mission.at("duration_s").get<double>(), 1e-3);
     EXPECT_EQ(mission.at("track").at("t_s").size(), mission.at("track").at("z_m").size());

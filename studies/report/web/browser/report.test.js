@@ -162,7 +162,7 @@ test("failed missions have the command that flies them again", async () => {
   const page = await open();
   await page.click("#failures summary");
   const command = await page.textContent("#failures li code");
-  assert.match(command, /^ed3r replay '.*<script>.*' online\/[\w-]+\/\d+$/);
+  assert.match(command, /^ed3r replay '.*<script>.*' online\/[\w-]+\/\d+ --html$/);
   await page.close();
 });
 

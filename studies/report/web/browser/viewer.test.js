@@ -27,19 +27,19 @@ before(async () => {
 });
 after(() => browser?.close());
 
-async function open(options = {}, fragment = "") {
+async function open(options = {}, fragment = "", at = address) {
   const page = await browser.newPage({ viewport: { width: 1000, height: 700 }, ...options });
   page.faults = [];
   // Of WebGL drivers alone: reading back pixels for a screenshot is slow.
   page.on("console", (message) => message.type() === "error" && page.faults.push(message.text()));
   page.on("pageerror", (error) => page.faults.push(error.message));
   page.on("request", (request) => {
-    if (!/^(data|blob):/.test(request.url()) && request.url().split("#")[0] !== address)
+    if (!/^(data|blob):/.test(request.url()) && request.url().split("#")[0] !== at)
       page.faults.push(`asked for ${request.url()}`);
   });
   // Software draws slowly where cores are busy.
   page.setDefaultTimeout(120_000);
-  await page.goto(address + fragment, { timeout: 120_000 });
+  await page.goto(at + fragment, { timeout: 120_000 });
   await page.waitForSelector("html[data-ready]");
   return page;
 }
@@ -116,6 +116,72 @@ test("two missions share the page, and no axe fault", async () => {
     ),
     [],
   );
+  await page.close();
+});
+
+test("LiDARs tell the nearest surface that is stored, and the decision panel the stored choice", async () => {
+  const page = await open({}, "#map");
+  const data = await page.evaluate(
+    () => JSON.parse(document.getElementById("page-data").textContent).missions[0],
+  );
+  const at = data.track.t_s.findIndex((t, i) => t > 0 && data.lidar.met.some(([sample]) => sample === i));
+  assert.ok(at > 0, "some surface is within range");
+  await page.evaluate((time) => {
+    const bar = document.querySelector("#controls input");
+    bar.value = time;
+    bar.dispatchEvent(new Event("input"));
+  }, data.track.t_s[at] + 1e-6);
+  const from = ["x_m", "y_m", "z_m"].map((axis) => data.track[axis][at]);
+  const nearest = Math.min(
+    ...data.lidar.met
+      .filter(([sample]) => sample === at)
+      .map(([, ...point]) => Math.hypot(...from.map((value, i) => point[i] - value))),
+  );
+  const told = await page.$$eval(".mission:first-child .value", (values) =>
+    Object.fromEntries(
+      values.map((v) => [v.querySelector("small").textContent, v.querySelector("b").textContent]),
+    ),
+  );
+  assert.equal(Number.parseFloat(told["LiDAR, nearest"]), Number(nearest.toFixed(1)));
+
+  // A timestep whose motion was chosen by predicted reward: the best candidate is the one that was flown.
+  const greedy = data.decisions.findIndex((decision) => decision.candidates.length > 0);
+  assert.ok(greedy >= 0);
+  await scrubTo(page, greedy + 1, 0.5);
+  const text = await page.$eval(".mission:first-child .stages", (stages) => stages.textContent);
+  const row = stored[greedy];
+  const moved = Math.hypot(row.command_dx_m, row.command_dy_m, row.command_dz_m).toFixed(1);
+  assert.ok(text.includes(`${data.decisions[greedy].rule}: ${moved} m`), text);
+  assert.ok(text.includes(`expected ${row.rc_predicted_reward.toFixed(3).replace("-", "−")}`), text);
+  const [dx, dy, dz, reward] = data.decisions[greedy].candidates[0];
+  assert.ok(Math.abs(reward - row.rc_predicted_reward) < 1e-3, "the best candidate's reward was expected");
+  assert.ok(
+    Math.hypot(dx - row.command_dx_m, dy - row.command_dy_m, dz - row.command_dz_m) < 0.1,
+    "the best candidate was flown",
+  );
+  await page.close();
+});
+
+test("a mission that looks at pixels shows the frame of its last look", async () => {
+  const pixels = pathToFileURL(join(resolve(process.env.ED3R_PIXELS), "mission.html")).href;
+  const page = await open({}, "#map", pixels);
+  const data = await page.evaluate(
+    () => JSON.parse(document.getElementById("page-data").textContent).missions[0],
+  );
+  assert.equal(data.frames.jpeg.length, data.steps.k.length);
+  const shown = () =>
+    page.$eval(".camera img", async (image) => {
+      if (image.src) await image.decode();
+      return [image.hidden, image.src.replace("data:image/jpeg;base64,", ""), image.naturalWidth];
+    });
+  assert.deepEqual(await shown(), [true, "", 0]);
+  for (const k of [1, data.steps.k.length]) {
+    await scrubTo(page, k, 0.999);
+    assert.deepEqual(await shown(), [false, data.frames.jpeg[k - 1], data.frames.width_px]);
+  }
+  assert.ok(data.decisions.length === data.steps.k.length, "its agents are asked, too");
+  assert.deepEqual(page.faults, []);
+  if (shots) await page.screenshot({ path: join(shots, "viewer-pixels.png") });
   await page.close();
 });
 

@@ -110,7 +110,7 @@ test("pooled success counts missions", () => {
 });
 
 test("commands name the arm as the store does", () => {
-  assert.equal(model.command(model.arms[0], 7), "ed3r replay 'results/runs/x y' online/rbs@base/7");
+  assert.equal(model.command(model.arms[0], 7), "ed3r replay 'results/runs/x y' online/rbs@base/7 --html");
 });
 
 test("failed missions are grouped by cause within the selection", () => {

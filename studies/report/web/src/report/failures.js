@@ -20,10 +20,13 @@ export function failures(model) {
   };
 }
 
+const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
 /** Links to viewers beside the page. */
 function watch(model) {
   const { viewers } = model.data;
-  if (viewers.length === 0) return null;
+  if (viewers.length === 0)
+    return model.data.viewers_note && el("p", { class: "note" }, capital(model.data.viewers_note));
   return [
     el("h2", { id: "watch" }, "Missions to watch"),
     el(
@@ -36,9 +39,7 @@ function watch(model) {
     el(
       "p",
       { class: "key" },
-      "Any other: its command below with ",
-      el("code", {}, "--html"),
-      "; two on one clock: ",
+      "Any other: its command below writes mission.html; two on one clock: ",
       el("code", {}, "--beside ARM/NUMBER"),
       ".",
     ),
@@ -106,6 +107,7 @@ const armNode = (model, { arm, count: n, missions, cut }) => {
 
 function item(model, arm, [missionNumber, site, energy, duration]) {
   const command = model.command(arm, missionNumber);
+  const file = model.viewer(arm, missionNumber);
   const copy = button("Copy", () => copyText(command, copy), {
     class: "small",
     "aria-label": `Copy the command for mission ${missionNumber} of ${arm.label}`,
@@ -116,6 +118,7 @@ function item(model, arm, [missionNumber, site, energy, duration]) {
     el("code", {}, command),
     " ",
     copy,
+    file && [" ", el("a", { href: encodeURI(file) }, "watch")],
     el("small", {}, ` ${model.sites.get(site)?.name}, ${number(energy, 1)} kJ, ${number(duration, 1)} min`),
   );
 }

@@ -60,7 +60,11 @@ export function makeModel(data) {
   }
 
   const command = (arm, number) =>
-    `ed3r replay ${quoted(arm.dir ?? data.run.dir)} ${quoted(`${arm.stored_name}/${number}`)}`;
+    `ed3r replay ${quoted(arm.dir ?? data.run.dir)} ${quoted(`${arm.stored_name}/${number}`)} --html`;
+
+  /** The viewer beside the page that shows this mission, or undefined. */
+  const viewer = (arm, number) =>
+    data.viewers.find(({ mission }) => !arm.dir && mission === `${arm.stored_name}/${number}`)?.file;
 
   return {
     data,
@@ -77,6 +81,7 @@ export function makeModel(data) {
     histogram,
     pooled,
     command,
+    viewer,
   };
 }
 
