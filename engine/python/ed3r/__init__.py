@@ -9,6 +9,12 @@
 Energies are in joule, lengths in metre, angles in radian, times in second.
 """
 
+import os
+
+# Each stage of a step waits for all threads. By default they spin meanwhile, and on a machine that others use too that takes
+# the processor from the very thread that is waited for: three times slower there. Read when OpenMP is loaded.
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+
 from ._core import InternalError, UserError
 from ._fly import fly
 from ._network import save_network
