@@ -9,7 +9,6 @@
 #include "engine/app/decision_text.h"
 #include "engine/app/execution_reason.h"
 #include "engine/core/check.h"
-#include "engine/store/digest.h"
 #include "studies/figures/mission_columns.h"
 #include "studies/tables/names.h"
 
@@ -192,7 +191,7 @@ Json ViewerMission(StoredRun& run, const std::string& mission) {
       {"number", id.mission},
       {"outcome", record.outcome},
       {"outcome_name", NameOf(static_cast<Outcome>(record.outcome))},
-      {"identical", DigestOf(record) == DigestOf(stored.record)},
+      {"identical", run.Reader().IsStored(record, stored)},
       {"site", record.site},
       {"base_station", record.base_station},
       {"scenario", record.scenario},
