@@ -120,9 +120,15 @@ int Explain(const Options& options) {
   probe.timestep = static_cast<std::uint32_t>(options.step);
   MissionTask task = run.Task(id);
   task.probe = &probe;
-  FlyMission(task);
+  const MissionRecord flown = FlyMission(task);
   ED3R_CHECK(probe.reached, "the mission ended before the stored one");
-  const TimestepRecord& step = stored.record.steps[static_cast<std::size_t>(options.step - 1)];
+  if (!stored.keeps_timesteps && !run.Reader().IsStored(flown, stored))
+    throw UserError(
+        fmt::format("{}: flown again it differs, and its timesteps are not stored "
+                    "(store.timesteps): there is nothing to explain",
+                    options.mission));
+  const MissionRecord& told = stored.keeps_timesteps ? stored.record : flown;
+  const TimestepRecord& step = told.steps[static_cast<std::size_t>(options.step - 1)];
   options.json ? PrintJson(task, probe, step) : PrintText(task, probe, step);
   return kDone;
 }

@@ -35,6 +35,7 @@ void PrintJson(const SweepPlan& plan, int threads) {
                                 {"kind", stage.kind == StageKind::kTrain ? "train" : "fly"},
                                 {"after", stage.after},
                                 {"missions_per_arm", stage.missions},
+                                {"timesteps", NameOf(stage.timesteps)},
                                 {"expected_s", ExpectedWallS(stage, threads)},
                                 {"arms", arms}});
   }
@@ -55,6 +56,9 @@ void PrintText(const SweepPlan& plan, int threads) {
     fmt::print(
         ": {} x {}, about {:.1f} min on {}\n", Counted(static_cast<std::int64_t>(stage.arms.size()), "arm"),
         Counted(stage.missions, "mission"), ExpectedWallS(stage, threads) / 60.0, Counted(threads, "thread"));
+    if (stage.timesteps != KeptTimesteps::kAll)
+      fmt::print("  stores timesteps of {} missions\n",
+                 stage.timesteps == KeptTimesteps::kNone ? "no" : "failed");
     for (const Arm& arm : stage.arms) {
       std::string settings;
       for (const auto& [key, value] : arm.settings) settings += fmt::format("  {}={}", key, value);

@@ -13,7 +13,6 @@
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/file.h"
-#include "engine/store/digest.h"
 #include "engine/world/map_picture.h"
 #include "studies/metrics/number_text.h"
 #include "studies/report/web_page.h"
@@ -135,7 +134,7 @@ int Replay(const Options& options) {
   TraceFile trace(out / "trace.csv", film ? &*film : nullptr);
   task.trace = &trace;
   const MissionRecord flown = FlyMission(task);
-  const bool identical = DigestOf(flown) == DigestOf(stored.record);
+  const bool identical = run.Reader().IsStored(flown, stored);
   trace.Commit();
   WriteSteps(flown, out / "timesteps.csv");
   std::vector<Eigen::Vector3d> path_m = {{flown.start_x_m, flown.start_y_m, flown.start_z_m}};

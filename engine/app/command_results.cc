@@ -8,6 +8,7 @@
 
 #include "engine/app/commands.h"
 #include "engine/app/failure_text.h"
+#include "engine/app/gathered_shards.h"
 #include "engine/app/report_missions.h"
 #include "engine/app/stage_state.h"
 #include "engine/app/status_of_shards.h"
@@ -122,12 +123,13 @@ struct ReportOptions {
 };
 
 int MakeReportOf(const ReportOptions& options) {
-  ResultReader reader(options.dir);
+  const GatheredShards run(options.dir);
+  ResultReader reader(run.dir());
   reader.CheckWhole();  // before anything is written
-  const RunResults results = LoadRun(options.dir);
+  const RunResults results = LoadRun(run.dir());
   const Report report = MakeReport(results, ReadDepartures(reader),
                                    options.claims ? Judging::kEverything : Judging::kWhatThePaperFlew);
-  FolderOptions folder{.dir = options.dir,
+  FolderOptions folder{.dir = run.dir(),
                        .out = options.out,
                        .figures = !options.no_figures,
                        .force = options.force,
@@ -136,7 +138,7 @@ int MakeReportOf(const ReportOptions& options) {
                    (options.claims ? " --claims" : "");
   if (folder.out.empty()) folder.out = options.dir + "/report";
   WatchedMissions watched;
-  if (!options.no_missions) watched = WatchMissions(report, results, options.dir, options.cache);
+  if (!options.no_missions) watched = WatchMissions(report, results, run.dir(), options.cache);
   folder.viewers_note = watched.note;
   for (const WatchedMission& mission : watched.list)
     folder.viewers.push_back({{"mission", mission.mission}, {"what", mission.what}, {"file", mission.file}});
@@ -163,7 +165,7 @@ Command AddReport(Program& program) {
   auto options = std::make_shared<ReportOptions>();
   CommandLine parser = program.AddCommand(
       "report", "Tables, figures and index.html of a run beside the paper's values, written to DIR/report");
-  parser.Option("DIR", options->dir, "Run directory").Required();
+  parser.Option("DIR", options->dir, "Run directory; shards in it count, merged or not").Required();
   parser.Option("--out", options->out, "Folder to write to; default DIR/report").Path();
   parser.Flag("--force", options->force, "Write into a folder that is neither empty nor a report, too");
   parser.Flag("--claims", options->claims,

@@ -12,7 +12,6 @@
 #include "engine/app/viewer_frames.h"
 #include "engine/app/viewer_rays.h"
 #include "engine/core/check.h"
-#include "engine/store/digest.h"
 #include "studies/figures/mission_columns.h"
 #include "studies/tables/names.h"
 
@@ -186,7 +185,7 @@ Json ViewerMission(StoredRun& run, const std::string& mission) {
       {"number", id.mission},
       {"outcome", record.outcome},
       {"outcome_name", NameOf(static_cast<Outcome>(record.outcome))},
-      {"identical", DigestOf(record) == DigestOf(stored.record)},
+      {"identical", run.Reader().IsStored(record, stored)},
       {"site", record.site},
       {"base_station", record.base_station},
       {"scenario", record.scenario},

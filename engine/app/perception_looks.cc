@@ -50,6 +50,7 @@ PerceptionLooks LooksOfRun(const std::string& dir) {
       if (stage.kind != StageKind::kFly || config.perception.tier != PerceptionTier::kPixels) continue;
       if (found.looks.empty()) found.configured = config.perception;
       const Scene& scene = run.SharedInputs().SceneOf(config);
+      run.Reader().NeedTimesteps(s);
       run.Reader().ForEachMission(s, a, Steps::kLoad, [&](const StoredMission& mission) {
         AddMission(mission, scene, config, plan.seed, found.looks);
       });

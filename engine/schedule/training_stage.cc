@@ -49,6 +49,7 @@ Samples ReadSamples(ResultReader& reader, const SweepPlan& plan, const WarmupPar
   const Config& flown =
       plan.stages[static_cast<std::size_t>(part.stage)].arms[static_cast<std::size_t>(part.arm)].config;
   Samples samples;
+  reader.NeedTimesteps(part.stage);
   reader.ForEachMission(
       part.stage, part.arm, part.first, part.end, Steps::kLoad, [&](const StoredMission& mission) {
         AppendSamples(mission.record, mission.id.mission, flown, agents, samples.rc, samples.robot);

@@ -17,6 +17,11 @@ std::vector<std::string> ColumnsIn(Connection& database, const std::string& tabl
   return names;
 }
 
+std::vector<KeptTimesteps> KeptIn(Connection& database) {
+  Statement plan(database, "SELECT value FROM recipe WHERE key = 'plan'");
+  return plan.Step() ? ReadKeptTimesteps(plan.Text(0)) : std::vector<KeptTimesteps>();
+}
+
 std::string Sha256Of(std::string_view bytes) {
   Sha256 sha;
   sha.Update(bytes);
@@ -28,6 +33,7 @@ std::string Sha256Of(std::string_view bytes) {
 RecordTables::RecordTables(Connection& database)
     : checked_(database.Int("SELECT count(*) FROM pragma_table_info('missions') WHERE name = 'checksum'") >
                0),
+      kept_(KeptIn(database)),
       missions_(ColumnsIn(database, "missions")),
       timesteps_(ColumnsIn(database, "timesteps")) {
   for (const std::string& unknown : {missions_.unknown(), timesteps_.unknown()})
@@ -35,6 +41,17 @@ RecordTables::RecordTables(Connection& database)
       throw UserError(
           fmt::format("{}: written by another version of ed3r: this one does not know its column {}",
                       database.file(), unknown));
+}
+
+KeptTimesteps RecordTables::KeptOf(int stage) const {
+  const auto s = static_cast<std::size_t>(stage);
+  return s < kept_.size() ? kept_[s] : KeptTimesteps::kAll;
+}
+
+bool RecordTables::KeepsTimesteps(int stage, const MissionRecord& record) const {
+  const KeptTimesteps kept = KeptOf(stage);
+  if (kept == KeptTimesteps::kFailed) return record.outcome != static_cast<std::int64_t>(Outcome::kSuccess);
+  return kept == KeptTimesteps::kAll;
 }
 
 std::string RecordTables::StepsChecksum(const std::vector<TimestepRecord>& steps) const {

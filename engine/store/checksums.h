@@ -11,6 +11,7 @@
 #include "engine/store/columns.h"
 #include "engine/store/layout.h"
 #include "engine/store/sqlite.h"
+#include "engine/sweep/kept_timesteps.h"
 
 namespace ed3r {
 
@@ -32,6 +33,10 @@ class RecordTables {
   // False in a file of format 1, whose missions have no checksums.
   bool checked() const { return checked_; }
 
+  KeptTimesteps KeptOf(int stage) const;
+  // Whether the timesteps of this mission of the stage are in the file. Its checksums are over them in any case.
+  bool KeepsTimesteps(int stage, const MissionRecord& record) const;
+
   std::string StepsChecksum(const std::vector<TimestepRecord>& steps) const;
   std::string MissionChecksum(const RunLayout& layout, const RunId& id, const MissionRecord& record,
                               const std::string& steps) const;
@@ -39,6 +44,7 @@ class RecordTables {
 
  private:
   bool checked_;
+  std::vector<KeptTimesteps> kept_;  // by stage
   StoredColumns<MissionRecord> missions_;
   StoredColumns<TimestepRecord> timesteps_;
 };

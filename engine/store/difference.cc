@@ -35,9 +35,24 @@ bool ColumnsDiffer(const Record& here, const Record& there, FirstDifference& fou
   return true;
 }
 
+// Where one of the two has no timesteps stored.
+std::optional<FirstDifference> CompareByChecksum(const std::string& mission, const StoredMission& here,
+                                                 const StoredMission& there) {
+  FirstDifference found{.mission = mission, .timestep = 0, .quantity = "", .here = "", .there = ""};
+  if (ColumnsDiffer(here.record, there.record, found)) return found;
+  if (here.steps_checksum == there.steps_checksum) return std::nullopt;
+  found.quantity = "checksum of its timesteps";
+  found.here = here.steps_checksum;
+  found.there = there.steps_checksum;
+  return found;
+}
+
 // The timesteps come first: they are where a difference begins.
-std::optional<FirstDifference> Compare(const std::string& mission, const MissionRecord& here,
-                                       const MissionRecord& there) {
+std::optional<FirstDifference> Compare(const std::string& mission, const StoredMission& stored_here,
+                                       const StoredMission& stored_there) {
+  if (!stored_here.keeps_timesteps || !stored_there.keeps_timesteps)
+    return CompareByChecksum(mission, stored_here, stored_there);
+  const MissionRecord &here = stored_here.record, &there = stored_there.record;
   FirstDifference found{.mission = mission, .timestep = 0, .quantity = "", .here = "", .there = ""};
   const std::size_t both = std::min(here.steps.size(), there.steps.size());
   for (std::size_t i = 0; i < both; ++i) {
@@ -56,7 +71,7 @@ std::optional<FirstDifference> Compare(const std::string& mission, const Mission
   return std::nullopt;
 }
 
-using MissionsByNumber = std::map<int, MissionRecord>;
+using MissionsByNumber = std::map<int, StoredMission>;
 
 // The place of an arm in another layout; none where it is not there.
 std::optional<std::pair<int, int>> FindArm(const RunLayout& layout, const std::string& stage,
@@ -80,7 +95,7 @@ void DiffArm(ResultReader& here, ResultReader& there, std::pair<int, int> at_her
   // One arm is held at a time; its missions come in the order of their numbers from both.
   MissionsByNumber others;
   there.ForEachMission(at_there.first, at_there.second, Steps::kLoad,
-                       [&](const StoredMission& mission) { others[mission.id.mission] = mission.record; });
+                       [&](const StoredMission& mission) { others[mission.id.mission] = mission; });
   const auto name = [&](int mission) {
     const RunLayout::Stage& stage = here.Layout().stages[static_cast<std::size_t>(at_here.first)];
     return fmt::format("stage {}, arm {}, mission {}", stage.name,
@@ -93,7 +108,7 @@ void DiffArm(ResultReader& here, ResultReader& there, std::pair<int, int> at_her
       NoteLonely(name(other->first), false, difference);
     if (other == others.end() || other->first != number) return NoteLonely(name(number), true, difference);
     ++difference.compared;
-    if (std::optional<FirstDifference> found = Compare(name(number), mission.record, other->second)) {
+    if (std::optional<FirstDifference> found = Compare(name(number), mission, other->second)) {
       ++difference.differing;
       if (!difference.first) difference.first = std::move(found);
     }

@@ -54,6 +54,9 @@ std::string StageDifference(const PlanStage& there, const PlanStage& here) {
     return fmt::format("stage {} builds on other stages there than here", there.name);
   if (!SamePrecision(there.precision, here.precision))
     return fmt::format("stage {} has another precision there than here", there.name);
+  if (there.timesteps != here.timesteps)
+    return fmt::format("stage {} stores timesteps of {} missions there and of {} here", there.name,
+                       NameOf(there.timesteps), NameOf(here.timesteps));
   if (here.missions < there.missions)
     return fmt::format("stage {} has {} missions per arm there and {} here, and none is taken out",
                        there.name, there.missions, here.missions);

@@ -98,13 +98,17 @@ class Target {
     const RunId id = mission.Checked();
     if (cursor_.Seek(mission.run(), mission.mission())) {
       cursor_.Checked();
-      if (CanonicalBytes(cursor_.record()) != CanonicalBytes(mission.record()))
+      if (CanonicalBytes(cursor_.record()) != CanonicalBytes(mission.record()) ||
+          (!mission.KeepsTimesteps() && cursor_.steps_checksum() != mission.steps_checksum()))
         throw UserError(fmt::format("{}: {} differs from the record of another store that is merged into {}",
                                     from, layout_.Describe(id), dir_));
       ++summary_.present;
       return;
     }
-    writer_.InsertMission(id, mission.record());
+    if (mission.KeepsTimesteps())
+      writer_.InsertMission(id, mission.record());
+    else
+      writer_.InsertWithoutTimesteps(id, mission.record(), mission.steps_checksum());
     if (!std::isnan(mission.wall_s())) writer_.InsertTiming(id, mission.session(), mission.wall_s());
     ++summary_.added;
   }
@@ -131,6 +135,13 @@ class Target {
 };
 
 void CheckSameRecipe(const ResultReader& first, const ResultReader& other) {
+  const std::vector<RunLayout::Stage>& stages = other.Layout().stages;
+  for (std::size_t s = 0; s < stages.size(); ++s)
+    if (!other.Tables().complete() && other.Tables().KeptOf(static_cast<int>(s)) != KeptTimesteps::kAll)
+      throw UserError(
+          fmt::format("{}: written by an older ed3r without the timesteps of stage {}, of which their new "
+                      "checksums would be made: it can be read, but not merged",
+                      other.dir(), stages[s].name));
   if (const auto difference = Difference(first.StoredRecipe(), other.StoredRecipe()))
     throw UserError(
         fmt::format("{} (there) and {} (here) cannot be merged: {}", first.dir(), other.dir(), *difference));

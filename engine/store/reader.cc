@@ -8,6 +8,7 @@
 
 #include "engine/core/check.h"
 #include "engine/store/damage.h"
+#include "engine/store/digest.h"
 #include "engine/store/directory_lock.h"
 #include "engine/store/schema.h"
 #include "engine/store/sqlite_errors.h"
@@ -117,11 +118,27 @@ void ResultReader::Visit(const std::string& where, Steps steps, const MissionVis
   const Transaction moment(database_, Transaction::Kind::kRead);
   MissionCursor cursor(database_, layout_, where, steps);
   while (cursor.Next())
-    visit({cursor.Checked(), cursor.record(), cursor.session(), cursor.wall_s(), cursor.checksum()});
+    visit({cursor.Checked(), cursor.record(), cursor.session(), cursor.wall_s(), cursor.checksum(),
+           cursor.steps_checksum(), cursor.KeepsTimesteps()});
+}
+
+void ResultReader::NeedTimesteps(int stage) const {
+  const KeptTimesteps kept = tables_->KeptOf(stage);
+  if (kept == KeptTimesteps::kAll) return;
+  throw UserError(
+      fmt::format("{}: stage {}: the timesteps are needed, and its sweep says store: {{timesteps: {}}}; fly "
+                  "it into another --out with store: {{timesteps: all}}",
+                  dir_, layout_.stages.at(static_cast<std::size_t>(stage)).name, NameOf(kept)));
+}
+
+bool ResultReader::IsStored(const MissionRecord& flown, const StoredMission& stored) const {
+  if (stored.keeps_timesteps) return DigestOf(flown) == DigestOf(stored.record);
+  return tables_->Of(layout_, stored.id, flown) == Checksums{stored.checksum, stored.steps_checksum};
 }
 
 void ResultReader::ForEachTimestep(int stage, int arm,
                                    const std::function<void(int, const TimestepRecord&)>& visit) {
+  NeedTimesteps(stage);
   ForEachMission(stage, arm, Steps::kLoad, [&](const StoredMission& mission) {
     for (const TimestepRecord& step : mission.record.steps) visit(mission.id.mission, step);
   });

@@ -28,6 +28,9 @@ struct StoredMission {
   std::int64_t session = 0;  // who flew it
   double wall_s = 0;         // and how long that took
   std::string checksum;      // see checksums.h; "" in files of format 1
+  std::string steps_checksum = {};
+  bool keeps_timesteps =
+      true;  // false: `record` has none, because its sweep leaves them out (kept_timesteps.h)
 };
 
 struct Session {
@@ -76,7 +79,14 @@ class ResultReader {
   // Missions first, first + 1, ..., end - 1 of the arm.
   void ForEachMission(int stage, int arm, int first, int end, Steps steps, const MissionVisitor& visit);
 
-  // Every timestep of one arm, for training and pooled figures.
+  // UserError unless the timesteps of all missions of the stage are stored.
+  void NeedTimesteps(int stage) const;
+
+  // Whether a flight is the stored one, timesteps included, wherever those are kept or not. `stored` has been loaded with
+  // its timesteps.
+  bool IsStored(const MissionRecord& flown, const StoredMission& stored) const;
+
+  // Every timestep of one arm, for training and pooled figures. UserError where some are not stored.
   void ForEachTimestep(int stage, int arm,
                        const std::function<void(int mission, const TimestepRecord&)>& visit);
 

@@ -26,20 +26,31 @@ RecordWriter::RecordWriter(Connection& database, const RunLayout& layout)
 
 void RecordWriter::InsertMission(const RunId& id, const MissionRecord& record) {
   CheckStorable(record);
-  const std::int64_t run = layout_.RunIndex(id), mission = id.mission;
-  const Checksums checksums = tables_.Of(layout_, id, record);
-  insert_mission_.Bind(0, run);
-  insert_mission_.Bind(1, mission);
-  insert_mission_.Bind(2, checksums.mission);
-  insert_mission_.Bind(3, checksums.steps);
-  BindColumns(insert_mission_, 4, record);
-  insert_mission_.Run();
-  insert_step_.Bind(0, run);
-  insert_step_.Bind(1, mission);
+  InsertRecord(id, record, tables_.StepsChecksum(record.steps));
+  if (!tables_.KeepsTimesteps(id.stage, record)) return;
+  insert_step_.Bind(0, layout_.RunIndex(id));
+  insert_step_.Bind(1, std::int64_t{id.mission});
   for (const TimestepRecord& step : record.steps) {
     BindColumns(insert_step_, 2, step);
     insert_step_.Run();
   }
+}
+
+void RecordWriter::InsertWithoutTimesteps(const RunId& id, const MissionRecord& record,
+                                          const std::string& steps_checksum) {
+  ED3R_CHECK(!tables_.KeepsTimesteps(id.stage, record), layout_.Describe(id));
+  InsertRecord(id, record, steps_checksum);
+}
+
+void RecordWriter::InsertRecord(const RunId& id, const MissionRecord& record,
+                                const std::string& steps_checksum) {
+  const std::int64_t run = layout_.RunIndex(id), mission = id.mission;
+  insert_mission_.Bind(0, run);
+  insert_mission_.Bind(1, mission);
+  insert_mission_.Bind(2, tables_.MissionChecksum(layout_, id, record, steps_checksum));
+  insert_mission_.Bind(3, steps_checksum);
+  BindColumns(insert_mission_, 4, record);
+  insert_mission_.Run();
   delete_failure_.Run(run, mission);
 }
 
@@ -119,6 +130,7 @@ bool MissionCursor::Next() {
 
 void MissionCursor::Load() {
   checksum_ = select_.Text(4);
+  steps_checksum_ = select_.Text(5);
   ReadColumns(select_, 6, record_);
   record_.steps.clear();
   if (with_steps_) {
@@ -141,10 +153,12 @@ void MissionCursor::Load() {
 
 std::string MissionCursor::WhatIsWrong(const RunId& id) const {
   if (!tables_.checked()) return "";
-  const std::string steps = select_.Text(5);
-  if (tables_.MissionChecksum(layout_, id, record_, steps) != checksum_)
+  if (tables_.MissionChecksum(layout_, id, record_, steps_checksum_) != checksum_)
     return "its record does not match its checksum";
-  if (with_steps_ && tables_.StepsChecksum(record_.steps) != steps)
+  if (!with_steps_) return "";
+  if (!tables_.KeepsTimesteps(id.stage, record_))
+    return record_.steps.empty() ? "" : "it has timesteps, which its sweep leaves out (store.timesteps)";
+  if (tables_.StepsChecksum(record_.steps) != steps_checksum_)
     return "its timesteps do not match their checksum";
   return "";
 }

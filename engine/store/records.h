@@ -28,11 +28,16 @@ class RecordWriter {
 
   // Takes a failure of the same mission away: it has been flown now.
   void InsertMission(const RunId& id, const MissionRecord& record);
+  // One whose timesteps were not kept, by the checksum of those that it had. InternalError where they are kept.
+  void InsertWithoutTimesteps(const RunId& id, const MissionRecord& record,
+                              const std::string& steps_checksum);
   void InsertTiming(const RunId& id, std::int64_t session, double wall_s);
   // Replaces an older failure of the same mission.
   void InsertFailure(const RunId& id, std::int64_t scenario, std::uint64_t seed, const Failure& failure);
 
  private:
+  void InsertRecord(const RunId& id, const MissionRecord& record, const std::string& steps_checksum);
+
   const RunLayout& layout_;
   RecordTables tables_;
   Statement insert_mission_, insert_step_, insert_timing_, insert_failure_, delete_failure_;
@@ -78,6 +83,9 @@ class MissionCursor {
   std::int64_t session() const { return select_.Int(2); }
   double wall_s() const { return select_.Real(3); }
   const std::string& checksum() const { return checksum_; }  // "" in files of format 1
+  const std::string& steps_checksum() const { return steps_checksum_; }
+  // Whether its timesteps are in the file, whether or not they are loaded.
+  bool KeepsTimesteps() const { return tables_.KeepsTimesteps(id_.stage, record_); }
   const MissionRecord& record() const { return record_; }
 
   // What is wrong with the present mission, nothing when it is whole.
@@ -98,7 +106,7 @@ class MissionCursor {
   bool with_steps_;
   Statement select_, select_steps_;
   MissionRecord record_;
-  std::string checksum_;
+  std::string checksum_, steps_checksum_;
   DamagedMission damage_;
   RunId id_;
 };

@@ -184,6 +184,30 @@ WrittenCount MissionsOf(const StageSource& stage, const SweepSource& source, con
          fmt::format("missions: is missing in stage '{}'; allowed: 1 .. {}", stage.name, kMaxMissions));
 }
 
+WrittenTimesteps TimestepsOf(const StageSource& stage, const SweepSource& source) {
+  if (stage.section.timesteps) return *stage.section.timesteps;
+  return source.top.timesteps.value_or(WrittenTimesteps{KeptTimesteps::kAll, stage.at});
+}
+
+// Networks learn from timesteps of the stages that a training stage builds on, directly or not.
+void CheckLessonsAreKept(const std::vector<Stage>& stages, const std::vector<StageSource>& written,
+                         const SweepSource& source) {
+  for (const Stage& training : stages) {
+    if (training.kind != StageKind::kTrain) continue;
+    std::set<std::string> foundations(training.after.begin(), training.after.end());
+    for (std::size_t s = stages.size(); s-- > 0;) {
+      const Stage& stage = stages[s];
+      if (!foundations.contains(stage.name)) continue;
+      foundations.insert(stage.after.begin(), stage.after.end());
+      if (stage.timesteps != KeptTimesteps::kAll)
+        FailAt(TimestepsOf(written[s], source).at,
+               fmt::format("store.timesteps: '{}' is not allowed for stage '{}': stage '{}' learns from its "
+                           "timesteps; allowed there: all; write it in the stages that nothing learns from",
+                           NameOf(stage.timesteps), stage.name, training.name));
+    }
+  }
+}
+
 void CheckStagesOf(const MissionCounts& missions, const std::vector<StageSource>& stages) {
   std::vector<std::string> flying;
   for (const StageSource& stage : stages)
@@ -206,10 +230,11 @@ std::vector<Stage> ExpandStages(const SweepSource& source, const std::vector<Set
   std::int64_t all_missions = 0;
   for (const StageSource& from : written) {
     const WrittenCount count = MissionsOf(from, source, missions);
-    stages.push_back({from.name, from.kind, from.after, count.value, {}, {}});
+    stages.push_back({from.name, from.kind, from.after, count.value, {}, {}, KeptTimesteps::kAll});
     Stage& stage = stages.back();
     if (stage.kind == StageKind::kFly)
       stage.precision = from.section.precision ? from.section.precision : source.top.precision;
+    if (stage.kind == StageKind::kFly) stage.timesteps = TimestepsOf(from, source).kept;
     const std::size_t variant_axes = source.stages && source.top.axes ? source.top.axes->size() : 0;
     StageExpander expander(stage, from.at, Concatenated(source.top.axes, from.section.axes), variant_axes,
                            Concatenated(source.top.where, from.section.where));
@@ -230,6 +255,7 @@ std::vector<Stage> ExpandStages(const SweepSource& source, const std::vector<Set
                          "in a sweep",
                          all_missions, stage.name, kMaxMissions));
   }
+  CheckLessonsAreKept(stages, written, source);
   return stages;
 }
 

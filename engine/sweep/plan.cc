@@ -31,6 +31,8 @@ std::string SweepPlan::CanonicalText() const {
     if (stage.precision)
       text += fmt::format("precision={} {} {}\n", stage.precision->metric, stage.precision->half_width,
                           stage.precision->every);
+    if (stage.timesteps != KeptTimesteps::kAll)
+      text += fmt::format("timesteps={}\n", NameOf(stage.timesteps));
     for (const Arm& arm : stage.arms) {
       text += fmt::format("arm={}\n", arm.name) + ed3r::CanonicalText(arm.CanonicalConfig());
     }

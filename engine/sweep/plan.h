@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/config/config.h"
+#include "engine/sweep/kept_timesteps.h"
 
 namespace ed3r {
 
@@ -49,6 +50,7 @@ struct Stage {
   int missions = 0;                // per arm, at most where `precision` is set; 0 for a training stage
   std::optional<Precision> precision;
   std::vector<Arm> arms;
+  KeptTimesteps timesteps = KeptTimesteps::kAll;
 };
 
 struct SweepPlan {

@@ -39,6 +39,12 @@ Precision PrecisionOf(const std::string& text) {
   return precision;
 }
 
+KeptTimesteps TimestepsOf(const std::string& text) {
+  const std::optional<KeptTimesteps> kept = KeptTimestepsOf(text);
+  if (!kept) throw UserError(fmt::format("the stored plan cannot be read: timesteps={}", text));
+  return *kept;
+}
+
 // A line of a stage, or of the plan where there is no stage yet.
 void ReadLine(const std::string& key, const std::string& value, WrittenPlan& plan) {
   if (key == "sweep") plan.name = value;
@@ -50,6 +56,7 @@ void ReadLine(const std::string& key, const std::string& value, WrittenPlan& pla
   if (key == "after") stage.after = SplitList(value);
   if (key == "missions") stage.missions = NumberOf<int>(key, value);
   if (key == "precision") stage.precision = PrecisionOf(value);
+  if (key == "timesteps") stage.timesteps = TimestepsOf(value);
   if (key == "arm") stage.arms.push_back({value, {}});
   if (key.find('.') != std::string::npos && !stage.arms.empty()) stage.arms.back().settings[key] = value;
 }
@@ -90,6 +97,7 @@ SweepPlan PlanOf(const WrittenPlan& written, const std::string& from) {
     stage.after = from_stage.after;
     stage.missions = from_stage.missions;
     stage.precision = from_stage.precision;
+    stage.timesteps = from_stage.timesteps;
     for (const WrittenPlan::Arm& arm : from_stage.arms) stage.arms.push_back(ArmOf(arm, from));
   }
   return plan;

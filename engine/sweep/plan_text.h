@@ -24,6 +24,7 @@ struct WrittenPlan {
     int missions = 0;
     std::optional<Precision> precision;
     std::vector<Arm> arms;
+    KeptTimesteps timesteps = KeptTimesteps::kAll;
   };
   std::string name;
   std::uint64_t seed = 0;

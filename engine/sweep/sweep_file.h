@@ -5,6 +5,7 @@
 //   base: paper_base.yaml                    optional: another sweep file, merged underneath
 //   missions: 850                            per arm
 //   precision: {metric: msr_pct, half_width: 1.5}            optional: an arm stops when it is known this well (plan.h)
+//   store: {timesteps: none}                 optional: whose timesteps are stored: all | failed | none (kept_timesteps.h)
 //   seed: 20260101                           64 bits; 0 when nobody says
 //   set: {robot.speed_mps: 4}                fixed values; `ed3r params` lists the keys; may nest
 //   sweep:                                   axes, see axis.h; `strategy` is short for mission.strategy

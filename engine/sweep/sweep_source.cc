@@ -29,6 +29,18 @@ Precision ReadPrecision(const YamlNode& node, const ValueCheck& check) {
   return precision;
 }
 
+WrittenTimesteps ReadStoreKeys(const YamlNode& node) {
+  ExpectKeys(node, "store", {"timesteps"});
+  const YamlNode* timesteps = Find(node, "timesteps");
+  if (timesteps == nullptr) FailAt(node.at, "store: needs timesteps, e.g. {timesteps: none}");
+  const std::string& word = TextOf(*timesteps, "store.timesteps");
+  const std::optional<KeptTimesteps> kept = KeptTimestepsOf(word);
+  if (!kept)
+    FailAt(timesteps->at,
+           fmt::format("store.timesteps: '{}' is not allowed; allowed: all | failed | none", word));
+  return {*kept, timesteps->at};
+}
+
 SweepSection ReadSection(const YamlNode& map, const SettingReader& reader, const ValueCheck& check) {
   SweepSection section;
   if (const YamlNode* missions = Find(map, "missions"))
@@ -36,6 +48,7 @@ SweepSection ReadSection(const YamlNode& map, const SettingReader& reader, const
                         missions->at};
   if (const YamlNode* precision = Find(map, "precision"))
     section.precision = ReadPrecision(*precision, check);
+  if (const YamlNode* store = Find(map, "store")) section.timesteps = ReadStoreKeys(*store);
   if (const YamlNode* set = Find(map, "set")) section.set = reader.ReadMap(*set, "set");
   if (const YamlNode* sweep = Find(map, "sweep")) section.axes = ReadAxes(*sweep, reader);
   if (const YamlNode* where = Find(map, "where")) section.where = ReadConditions(*where, reader);
@@ -65,7 +78,8 @@ void AppendAfter(const YamlNode& node, const std::vector<std::string>& earlier,
 
 StageSource ReadStage(const YamlNode& node, const std::vector<std::string>& earlier,
                       const SettingReader& reader, const ValueCheck& check) {
-  ExpectKeys(node, "a stage", {"name", "kind", "after", "missions", "precision", "set", "sweep", "where"});
+  ExpectKeys(node, "a stage",
+             {"name", "kind", "after", "missions", "precision", "store", "set", "sweep", "where"});
   StageSource stage;
   stage.at = node.at;
   const YamlNode* name = Find(node, "name");
@@ -86,6 +100,8 @@ StageSource ReadStage(const YamlNode& node, const std::vector<std::string>& earl
     FailAt(stage.section.missions->at, "missions: is not allowed in a stage of kind train, which flies none");
   if (stage.kind == StageKind::kTrain && stage.section.precision)
     FailAt(stage.at, "precision: is not allowed in a stage of kind train, which flies none");
+  if (stage.kind == StageKind::kTrain && stage.section.timesteps)
+    FailAt(stage.section.timesteps->at, "store: is not allowed in a stage of kind train, which flies none");
   return stage;
 }
 
@@ -110,6 +126,7 @@ void MergeUnder(SweepSource& source, SweepSource base) {
   top.set = MergedSettings(base.top.set, top.set);
   if (!top.missions) top.missions = std::move(base.top.missions);
   if (!top.precision) top.precision = std::move(base.top.precision);
+  if (!top.timesteps) top.timesteps = std::move(base.top.timesteps);
   if (!top.axes) top.axes = std::move(base.top.axes);
   if (!top.where) top.where = std::move(base.top.where);
   if (!source.seed) source.seed = base.seed;
@@ -126,7 +143,7 @@ class SourceReader {
     if (yaml.root.kind == YamlNode::Kind::kNull)
       FailAt(yaml.root.at, "the file is empty; a sweep has at least a name and missions");
     ExpectKeys(yaml.root, "a sweep file",
-               {"name", "base", "missions", "precision", "seed", "set", "sweep", "where", "stages"});
+               {"name", "base", "missions", "precision", "store", "seed", "set", "sweep", "where", "stages"});
     const SettingReader reader(FolderOf(file), top_folder_, keep_absolute, check_);
     SweepSource source;
     source.file = file;

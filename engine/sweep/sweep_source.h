@@ -22,6 +22,11 @@ struct WrittenCount {
   std::string at;
 };
 
+struct WrittenTimesteps {
+  KeptTimesteps kept = KeptTimesteps::kAll;
+  std::string at;
+};
+
 // What the top level of a file and each of its stages have in common.
 struct SweepSection {
   std::optional<WrittenCount> missions;
@@ -29,6 +34,7 @@ struct SweepSection {
   std::vector<Setting> set;
   std::optional<std::vector<Axis>> axes;
   std::optional<std::vector<Condition>> where;
+  std::optional<WrittenTimesteps> timesteps;
 };
 
 struct StageSource {

@@ -160,7 +160,7 @@ std::vector<ExportedTable> ExportTables(ResultReader& reader, ExportFormat forma
   std::int64_t missions = 0, timesteps = 0;
   reader.ForEachMission(Steps::kSkip, [&](const StoredMission& mission) {
     ++missions;
-    timesteps += mission.record.timesteps;
+    if (mission.keeps_timesteps) timesteps += mission.record.timesteps;
   });
   const RunLayout layout = reader.Layout();
   const std::size_t width = LongestWord(layout);

@@ -20,7 +20,7 @@ int Rank(const ArmPlan& plan) { return plan.warmup ? 2 : plan.name == "ed3r-75" 
 std::optional<RunId> MedianMission(ResultReader& reader, int stage, int arm, Outcome outcome) {
   std::vector<std::pair<double, int>> ended_so;
   reader.ForEachMission(stage, arm, Steps::kSkip, [&](const StoredMission& mission) {
-    if (mission.record.outcome == static_cast<std::int64_t>(outcome))
+    if (mission.keeps_timesteps && mission.record.outcome == static_cast<std::int64_t>(outcome))
       ended_so.emplace_back(mission.record.duration_s, mission.id.mission);
   });
   if (ended_so.empty()) return std::nullopt;

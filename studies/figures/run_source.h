@@ -39,7 +39,7 @@ struct ShownMission {
 };
 
 // Up to one mission per outcome (success, false positive, battery depleted), all of one world: from the first arm that
-// has any, the one of the median duration. Arms are tried in this order: ed3r-75, other arms, warm-ups.
+// has any with stored timesteps, the one of the median duration. Arms are tried in this order: ed3r-75, other arms, warm-ups.
 std::vector<ShownMission> PickMissions(ResultReader& reader, std::span<const ArmPlan> plans);
 
 struct FoundScene {

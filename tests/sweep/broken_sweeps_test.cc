@@ -125,7 +125,8 @@ constexpr Broken kBroken[] = {
     {"unknown_axis_form.yaml", "unknown_axis_form.yaml:4:20: rang: unknown key; did you mean range?"},
     {"unknown_key.yaml", "unknown_key.yaml:2:1: mision: unknown key; did you mean missions?"},
     {"unknown_key_far.yaml",
-     "unknown_key_far.yaml:3:1: colour: unknown key; a sweep file has name, base, missions, precision, seed, "
+     "unknown_key_far.yaml:3:1: colour: unknown key; a sweep file has name, base, missions, precision, "
+     "store, seed, "
      "set, "
      "sweep, where, stages"},
     {"unknown_parameter.yaml",
@@ -166,7 +167,7 @@ constexpr Broken kBroken[] = {
      "yaml_lines.yaml:3:8: a value of several lines or with control characters is not allowed"},
     {"yaml_list_at_top.yaml",
      "yaml_list_at_top.yaml:1:1: a sweep file: a list is not allowed; allowed: a map with the keys name, "
-     "base, missions, precision, seed, set, sweep, where, stages"},
+     "base, missions, precision, store, seed, set, sweep, where, stages"},
     {"yaml_syntax.yaml", "yaml_syntax.yaml:3:9: not valid YAML: end of sequence flow not found"},
     {"yaml_tab.yaml", "yaml_tab.yaml:3:1: a tab is not allowed; indent with spaces"},
     {"yaml_tag.yaml", "yaml_tag.yaml:2:11: tag 'tag:yaml.org,2002:int' is not allowed"},

@@ -35,8 +35,7 @@ class Books {
         half_width_(half_width) {
     if (!HoldsResults(run_dir)) return;
     ResultReader reader(run_dir);
-    if (reader.StoredRecipe().plan_text != plan.CanonicalText())
-      throw UserError(fmt::format("{}: holds results of another plan; give another --out", run_dir));
+    CheckPlan(reader);
     merged_ = reader.Stored();
     has_networks_ = !reader.Networks().uses.empty();
   }
@@ -82,6 +81,16 @@ class Books {
   // Tasks are counted from 1: the last one flies shard 0.
   static std::int64_t TaskOf(std::int64_t shard, std::int64_t tasks) { return shard == 0 ? tasks : shard; }
 
+  // The numbers of arms and missions are those of a plan. A plan that has only grown is flown on by its first tasks.
+  void CheckPlan(const ResultReader& reader) const {
+    if (reader.StoredRecipe().plan_text != plan_.CanonicalText())
+      throw UserError(fmt::format(
+          "{}: holds results of another plan, and what is owed cannot be counted against this one; "
+          "give another --out, or, where the sweep has only grown since, submit it as a whole "
+          "(without --missing): every task flies what it lacks",
+          reader.dir()));
+  }
+
   int StageNumber(const std::string& name) const {
     const auto found = std::find_if(plan_.stages.begin(), plan_.stages.end(),
                                     [&](const Stage& stage) { return stage.name == name; });
@@ -91,7 +100,9 @@ class Books {
   std::vector<RunId> WithShards(const std::string& stage) const {
     std::vector<RunId> stored = merged_;
     for (const std::string& dir : ShardDirs(run_dir_, stage)) {
-      const std::vector<RunId> of_task = ResultReader(dir).Stored();
+      ResultReader reader(dir);
+      CheckPlan(reader);
+      const std::vector<RunId> of_task = reader.Stored();
       stored.insert(stored.end(), of_task.begin(), of_task.end());
     }
     std::sort(stored.begin(), stored.end());

@@ -1,0 +1,49 @@
+#include "engine/app/gathered_shards.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <vector>
+
+#include "engine/core/check.h"
+#include "engine/store/merge.h"
+#include "engine/store/schema.h"
+#include "engine/store/shards.h"
+
+namespace ed3r {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string NewTemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "ed3r-shards-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr)
+    throw UserError(fmt::format("{}: no folder can be made here for the joined shards", name));
+  return name;
+}
+
+}  // namespace
+
+GatheredShards::GatheredShards(const std::string& run_dir) : dir_(run_dir) {
+  std::vector<std::string> stores = ShardDirs(run_dir);
+  if (stores.empty()) return;
+  std::error_code error;  // none there: nothing has been merged yet
+  const std::uintmax_t merged_bytes = fs::file_size(fs::path(run_dir) / kResultsFile, error);
+  if (!error && merged_bytes > 0) stores.insert(stores.begin(), run_dir);
+  temporary_ = NewTemporaryFolder();
+  dir_ = (fs::path(temporary_) / "run").string();
+  try {
+    MergeStores(dir_, stores);
+  } catch (...) {
+    fs::remove_all(temporary_, error);
+    throw;
+  }
+}
+
+GatheredShards::~GatheredShards() {
+  std::error_code error;  // what is left in $TMPDIR is the system's to clean
+  if (!temporary_.empty()) fs::remove_all(temporary_, error);
+}
+
+}  // namespace ed3r

@@ -1,0 +1,23 @@
+// A run whose missions lie in the stores of a batch system's tasks, to be read as one.
+#pragma once
+
+#include <string>
+
+namespace ed3r {
+
+// Joins the stores of RUN/shards, and RUN's own where it has one, into a folder in $TMPDIR that goes with this object; a run
+// without shards is read where it is. Changes nothing in RUN. UserError where the stores do not belong together.
+class GatheredShards {
+ public:
+  explicit GatheredShards(const std::string& run_dir);
+  ~GatheredShards();
+  GatheredShards(const GatheredShards&) = delete;
+  GatheredShards& operator=(const GatheredShards&) = delete;
+
+  const std::string& dir() const { return dir_; }  // of one store
+
+ private:
+  std::string dir_, temporary_;
+};
+
+}  // namespace ed3r
