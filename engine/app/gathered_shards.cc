@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <vector>
 
 #include "engine/core/check.h"
 #include "engine/store/merge.h"
+#include "engine/store/reader.h"
 #include "engine/store/schema.h"
 #include "engine/store/shards.h"
 
@@ -23,6 +25,12 @@ std::string NewTemporaryFolder() {
   return name;
 }
 
+// Whether no mission is missing in the merged run, so that the shards have nothing to add.
+bool IsComplete(const std::string& run_dir) {
+  const std::vector<ArmStatus> arms = ResultReader(run_dir).Status();
+  return std::all_of(arms.begin(), arms.end(), [](const ArmStatus& arm) { return arm.missing == 0; });
+}
+
 }  // namespace
 
 GatheredShards::GatheredShards(const std::string& run_dir) : dir_(run_dir) {
@@ -30,7 +38,9 @@ GatheredShards::GatheredShards(const std::string& run_dir) : dir_(run_dir) {
   if (stores.empty()) return;
   std::error_code error;  // none there: nothing has been merged yet
   const std::uintmax_t merged_bytes = fs::file_size(fs::path(run_dir) / kResultsFile, error);
-  if (!error && merged_bytes > 0) stores.insert(stores.begin(), run_dir);
+  const bool merged = !error && merged_bytes > 0;
+  if (merged && IsComplete(run_dir)) return;
+  if (merged) stores.insert(stores.begin(), run_dir);
   temporary_ = NewTemporaryFolder();
   dir_ = (fs::path(temporary_) / "run").string();
   try {

@@ -6,7 +6,7 @@
 namespace ed3r {
 
 // Joins the stores of RUN/shards, and RUN's own where it has one, into a folder in $TMPDIR that goes with this object; a run
-// without shards is read where it is. Changes nothing in RUN. UserError where the stores do not belong together.
+// without shards, or that they have nothing to add to, is read where it is. Changes nothing in RUN. UserError where the stores do not belong together.
 class GatheredShards {
  public:
   explicit GatheredShards(const std::string& run_dir);

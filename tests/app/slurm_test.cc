@@ -85,6 +85,14 @@ TEST_F(PiecesTest, GiveTheDigestOfOneMachine) {
 
   ExpectDone(Piece(sweep, "online", "1/2"));
   ExpectDone(Piece(sweep, "online", "2/2"));
+  const std::string report =
+      " --json --no-figures --no-missions --force --out " + (scratch_ / "report").string();
+  const CommandResult of_shards = Ed3r("report " + Run() + report);
+  ExpectDone(of_shards);
+  EXPECT_EQ(nlohmann::json::parse(of_shards.out)["arms"]["ed3r-75"]["missions"], 5)
+      << "shards count before they are merged";
+  const CommandResult of_whole = Ed3r("report " + whole + report);
+  EXPECT_EQ(nlohmann::json::parse(of_shards.out)["arms"], nlohmann::json::parse(of_whole.out)["arms"]);
   Merge("online");
   EXPECT_EQ(Ed3r("digest " + Run()).out, Ed3r("digest " + whole).out);
   EXPECT_TRUE(Says(Missing(sweep), "step 7-report on")) << Missing(sweep);

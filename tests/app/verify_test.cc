@@ -112,6 +112,38 @@ TEST_F(VerifyTest, DiffNamesTheFirstQuantity) {
   EXPECT_NE(first["first"]["first"], first["first"]["second"]);
 }
 
+// What is kept of a flight is the user's choice, what it was is not.
+TEST(KeptTimestepsTest, ARunWithoutTimestepsIsTheSameRun) {
+  const ScratchFolder scratch;
+  const std::string all = (scratch / "all").string(), none = (scratch / "none").string();
+  const std::string sweep = (scratch / "none.yaml").string();
+  std::ofstream(sweep) << "base: " << kRbs << "\nname: rbs\nstore: {timesteps: none}\n";
+  ASSERT_EQ(Ed3r(fmt::format("run {} --missions 4 --quiet --out {}", kRbs, all)).status, 0);
+  const CommandResult flown = Ed3r(fmt::format("run {} --missions 4 --quiet --out {}", sweep, none));
+  ASSERT_EQ(flown.status, 0) << flown.err;
+
+  EXPECT_EQ(Ed3r("digest " + none).out, Ed3r("digest " + all).out);
+  EXPECT_EQ(Ed3r("verify " + none).status, 0);
+  EXPECT_EQ(Ed3r(fmt::format("diff {} {}", all, none)).status, 0);
+  const CommandResult replayed =
+      Ed3r(fmt::format("replay {} rbs/2 --out {}", none, (scratch / "r").string()));
+  EXPECT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_TRUE(Contains(replayed.out, "identical to the stored record")) << replayed.out;
+  const CommandResult explained = Ed3r(fmt::format("explain {} rbs/2 --step 1", none));
+  EXPECT_EQ(explained.status, 0) << explained.err;
+  const std::string report = " --json --no-figures --no-missions --out ";
+  const auto with = nlohmann::json::parse(Ed3r("report " + all + report + (scratch / "ra").string()).out);
+  const auto without = nlohmann::json::parse(Ed3r("report " + none + report + (scratch / "rn").string()).out);
+  EXPECT_EQ(with["arms"], without["arms"]);
+  const CommandResult exported =
+      Ed3r(fmt::format("export {} --csv --out {}", none, (scratch / "e").string()));
+  EXPECT_EQ(exported.status, 0) << exported.err;
+
+  const CommandResult other = Ed3r(fmt::format("run {} --missions 4 --quiet --out {}", kRbs, none));
+  EXPECT_EQ(other.status, 2);
+  EXPECT_EQ(std::count(other.err.begin(), other.err.end(), '\n'), 1) << other.err;
+}
+
 // Sweep, world, grid and network cache are gone, and the folder is called otherwise.
 TEST(SelfContainedTest, ARunDirectoryNeedsNothingBesideItself) {
   const ScratchFolder scratch;
