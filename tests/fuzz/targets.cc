@@ -128,7 +128,7 @@ void FuzzPicture(std::string_view bytes) {
   Refusable([&] {
     const PictureSides sides = ReadPictureSides(bytes, "x.png");
     if (sides.width_px * sides.height_px > kMostPixels) return;
-    bytes.front() == '\xff' ? CheckJpeg(bytes, "x.jpg") : void(DecodePng(bytes, "x.png"));
+    bytes.front() == '\xff' ? void(CheckJpeg(bytes, "x.jpg")) : void(DecodePng(bytes, "x.png"));
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include "engine/core/check.h"
 #include "studies/metrics/arm.h"
+#include "studies/paper/arms.h"
 
 namespace ed3r {
 namespace {
