@@ -4,6 +4,7 @@ include(GNUInstallDirs)
 set(ED3R_SHARE "${CMAKE_INSTALL_DATADIR}/ed3r")
 
 install(TARGETS ed3r RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+install(TARGETS ed3r_video LIBRARY DESTINATION lib/ed3r)
 install(DIRECTORY sweeps DESTINATION "${ED3R_SHARE}")
 install(DIRECTORY scripts/ DESTINATION "${ED3R_SHARE}/scripts" FILES_MATCHING PATTERN "plot*.py"
   PATTERN calibration EXCLUDE PATTERN detector_training EXCLUDE PATTERN trust_parts EXCLUDE PATTERN __pycache__ EXCLUDE)

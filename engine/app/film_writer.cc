@@ -1,15 +1,16 @@
 #include "engine/app/film_writer.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <opencv2/videoio.hpp>
 #include <string>
 
 #include "engine/core/check.h"
+#include "engine/core/shipped.h"
 #include "engine/world/quiet_opencv.h"
 
 namespace ed3r {
@@ -37,6 +38,21 @@ fs::path Temporary(const fs::path& path) {
   return name;
 }
 
+// Loaded once and never unloaded: codecs leave threads behind.
+std::unique_ptr<VideoCodec> LoadCodec(const fs::path& film) {
+  const fs::path beside = ProgramFolder() / "ed3r_video.so";
+  std::error_code ignored;
+  const fs::path library =
+      fs::exists(beside, ignored) ? beside : ProgramFolder() / "../lib/ed3r/ed3r_video.so";
+  void* loaded = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* made = loaded == nullptr ? nullptr : dlsym(loaded, kNewVideoCodec);
+  if (made == nullptr)
+    throw UserError(
+        fmt::format("--video {}: the library of codecs cannot be loaded ({}); --html and --frames need none",
+                    film.string(), dlerror()));
+  return std::unique_ptr<VideoCodec>(reinterpret_cast<NewVideoCodec*>(made)());
+}
+
 }  // namespace
 
 FilmWriter::FilmWriter(const fs::path& path, cv::Size size_px, double frames_per_second)
@@ -45,11 +61,9 @@ FilmWriter::FilmWriter(const fs::path& path, cv::Size size_px, double frames_per
   if (path.extension() != ".mp4")
     throw UserError(fmt::format("--video {}: is not allowed; its name must end in .mp4", path.string()));
   QuietOpenCv();
+  codec_ = LoadCodec(path);
   temporary_ = Temporary(path);
-  writer_ = std::make_unique<cv::VideoWriter>();
-  for (const int codec :
-       {cv::VideoWriter::fourcc('a', 'v', 'c', '1'), cv::VideoWriter::fourcc('m', 'p', '4', 'v')})
-    if (writer_->open(temporary_.string(), cv::CAP_FFMPEG, codec, frames_per_second, size_px)) return;
+  if (codec_->Open(temporary_.string(), frames_per_second, size_px)) return;
   fs::remove(temporary_);
   throw UserError(fmt::format(
       "--video {}: OpenCV has no codec for it on this machine (tried H.264 and MPEG-4 of FFmpeg); "
@@ -58,22 +72,19 @@ FilmWriter::FilmWriter(const fs::path& path, cv::Size size_px, double frames_per
 }
 
 FilmWriter::~FilmWriter() {
-  writer_.reset();
+  codec_.reset();
   std::error_code ignored;
   if (!temporary_.empty()) fs::remove(temporary_, ignored);
 }
 
 void FilmWriter::Add(const cv::Mat& bgr) {
   ED3R_CHECK(bgr.size() == size_px_ && bgr.type() == CV_8UC3, "a frame of the film");
-  writer_->write(bgr);
+  codec_->Write(bgr);
   ++frames_;
 }
 
 void FilmWriter::Commit() {
-  writer_->release();
-  // OpenCV does not tell of a full disk.
-  cv::VideoCapture reader(temporary_.string(), cv::CAP_FFMPEG);
-  const int whole = reader.isOpened() ? static_cast<int>(reader.get(cv::CAP_PROP_FRAME_COUNT)) : 0;
+  const int whole = codec_->Close();
   if (whole != frames_)
     CannotWrite(path_, fmt::format("{} of {} frames arrived; is the disk full?", whole, frames_));
   std::error_code error;

@@ -5,9 +5,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
-namespace cv {
-class VideoWriter;
-}
+#include "engine/app/video_codec.h"
 
 namespace ed3r {
 
@@ -27,7 +25,7 @@ class FilmWriter {
  private:
   std::filesystem::path path_, temporary_;
   cv::Size size_px_;
-  std::unique_ptr<cv::VideoWriter> writer_;
+  std::unique_ptr<VideoCodec> codec_;
   int frames_ = 0;
 };
 

@@ -6,6 +6,9 @@
 
 namespace ed3r {
 
+// Where the running program's file is.
+std::filesystem::path ProgramFolder();
+
 // The folder `name`, in this order: what the environment's `variable` says, where it is set and not empty;
 // share/ed3r/`name` beside the folder that the program runs from (an installed tree, wherever it was moved to);
 // `source`, of the tree that the program was built from. It need not exist.
