@@ -102,6 +102,34 @@ TEST_F(PiecesTest, GiveTheDigestOfOneMachine) {
   EXPECT_EQ(Ed3r("digest " + Run()).out, Ed3r("digest " + whole).out) << "merging again changes nothing";
 }
 
+// A task on a node's own disk is killed with most of what it has stored still in the journal beside its file.
+TEST_F(PiecesTest, WhatAKilledTaskHasStoredComesHomeFromItsOwnDisk) {
+  const std::string sweep = Write(kStages);
+  const std::filesystem::path local = scratch_ / "local";
+  std::filesystem::create_directory(local);
+  ExpectDone(Ed3r(fmt::format("slurm {} --missions warmup=4000 --shards 2 --scratch {} --out {} --cache {}",
+                              sweep, local.string(), Run(), Cache())));
+  const std::string script = (scratch_ / "kill.sh").string();
+  std::ofstream(script) << fmt::format(R"(cd {}/slurm
+SLURM_ARRAY_TASK_ID=1 bash 1-warmup.sbatch >../log 2>&1 &
+task=$!
+for i in $(seq 600); do
+  sleep 0.1
+  size=$(cat {}/*/results.sqlite-wal 2>/dev/null | wc -c)
+  [ "$size" -lt 1500000 ] || break
+done
+pkill -KILL -P $task
+wait $task
+)",
+                                       Run(), local.string());
+  EXPECT_EQ(std::system(("bash " + script).c_str()) >> 8, 75) << ReadAll(scratch_ / "run/log");
+  const std::string store = Run() + "/shards/warmup/00001";
+  EXPECT_EQ(Ed3r("verify " + store).status, 0);
+  const auto status = nlohmann::json::parse(Ed3r("status --json " + store).out);
+  EXPECT_GT(status["arms"][0]["done"], 0) << ReadAll(scratch_ / "run/log");
+  EXPECT_TRUE(std::filesystem::is_empty(local));
+}
+
 TEST_F(PiecesTest, APrecisionGoesInRounds) {
   const std::string sweep = Write(
       "name: rounds\nmissions: 60\nprecision: {metric: total_energy_kj, half_width: 2, every: 20}\n"

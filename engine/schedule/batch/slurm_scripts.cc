@@ -68,8 +68,16 @@ fly() {{
   fi
   task run "${{sweep[@]}}" --stage "$1" --shard "$2/$3" --from "$run" --out "$out" --cache "$cache" \
     --threads "$threads" --quiet || status=$?
-  if [ -n "$scratch" ]; then  # the store appears whole or not at all
-    cp "$out/results.sqlite" "$store/.arriving" && mv -f "$store/.arriving" "$store/results.sqlite" || status=1
+  if [ -n "$scratch" ] && [ -s "$out/results.sqlite" ]; then
+    # By merge and not by cp: what a killed task has stored may still lie in the journal beside its file. The store appears
+    # whole or not at all; what cannot be brought home stays where it is.
+    if "$ed3r" merge "$out/whole" "$out" >&2 && cp "$out/whole/results.sqlite" "$store/.arriving"; then
+      mv -f "$store/.arriving" "$store/results.sqlite" && rm -rf "$out"
+    else
+      echo "the results of this task could not be moved to $store; they are in $out on $(hostname)" >&2
+      [ "$status" -ne 0 ] || status=1
+    fi
+  elif [ -n "$scratch" ]; then  # it ended before it stored anything
     rm -rf "$out"
   fi
   [ "$status" -ne 3 ] || status=0  # some missions failed: the next step looks at the stores
