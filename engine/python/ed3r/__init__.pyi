@@ -56,7 +56,8 @@ class VectorEnv:
 
     Autoreset as Gymnasium defines it. NEXT_STEP: the step after the end begins the row's next mission and flies nothing
     (reward 0, its mask is False). SAME_STEP: the step that ends a mission begins the next; infos["final_obs"] and
-    infos["final_info"] hold the end, with masks. DISABLED: the row waits for reset(options={"reset_mask": mask}).
+    infos["final_info"] hold the end, with masks. DISABLED: the row waits for reset(options={"reset_mask": mask});
+    until then a step flies nothing in it and repeats its last values: leave such rows out.
 
     Row i flies missions i, i + N, i + 2N, ... of the arm: a mission depends on sweep, seed, number and actions alone, not on
     N, threads, or what the other rows do. The interpreter lock is released while missions fly; one thread uses an
