@@ -6,7 +6,7 @@
 #include <memory>
 #include <new>
 
-namespace ed3r {
+namespace ed3r::kernels {
 
 class AlignedFloats {
  public:
@@ -31,4 +31,4 @@ class AlignedFloats {
   std::size_t size_ = 0;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::kernels

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 inline void TransposeQuarter(const float* from, float* to) {
@@ -39,4 +39,4 @@ inline void TransposeBlock(const float* from, float* to) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::kernels

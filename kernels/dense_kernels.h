@@ -9,7 +9,7 @@
 #include "kernels/rfnn.h"
 #include "kernels/simd_level.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 
 // Candidates of the widest tile (AVX-512: 3 vectors of 16).
 inline constexpr int kMaxTile = 48;
@@ -84,4 +84,4 @@ const DenseKernels& Avx512Kernels();
 // The kernels of a level. Throws SimdLevelError where this CPU lacks it.
 const DenseKernels& KernelsFor(SimdLevel level);
 
-}  // namespace ed3r
+}  // namespace ed3r::kernels

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 // Calls visit(flat index, packed index) for every parameter.
@@ -73,4 +73,4 @@ void UnpackParameters(const DenseShape& shape, const float* packed, float* flat)
   ForEachParameter(shape, [&](std::size_t f, std::size_t p) { flat[f] = packed[p]; });
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::kernels

@@ -16,7 +16,7 @@
 
 #include <cstddef>
 
-namespace ed3r {
+namespace ed3r::kernels {
 
 inline constexpr int kMaxDenseLayers = 8;
 inline constexpr int kDenseBlock = 16;  // outputs per packed block
@@ -57,4 +57,4 @@ struct DenseNet {
   const float* packed = nullptr;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::kernels

@@ -12,7 +12,7 @@
 
 #include "kernels/dense_net.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 constexpr int kParts = kDenseBlock / V::kLanes;  // vectors in a block of 16 columns
@@ -114,4 +114,4 @@ void RunGemm(const Gemm& g, const Epilogue& epilogue) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::kernels

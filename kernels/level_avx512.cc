@@ -4,7 +4,7 @@
 #include "kernels/avx_transpose.h"
 #include "kernels/dense_kernels.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 struct V {
@@ -47,16 +47,16 @@ struct V {
 };
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::kernels
 
 #include "kernels/rfnn_loops.h"
 #include "kernels/train_loops.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 
 const DenseKernels& Avx512Kernels() {
   static constexpr DenseKernels kKernels{AcrossCandidates, AcrossNeurons, BlockGradient, AdamBlock};
   return kKernels;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::kernels

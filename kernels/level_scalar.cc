@@ -4,11 +4,11 @@
 #include "kernels/rfnn_loops.h"
 #include "kernels/train_loops.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 
 const DenseKernels& ScalarKernels() {
   static constexpr DenseKernels kKernels{AcrossCandidates, AcrossNeurons, BlockGradient, AdamBlock};
   return kKernels;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::kernels

@@ -6,7 +6,7 @@
 
 #include "kernels/dense_kernels.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 struct V {
@@ -39,4 +39,4 @@ struct V {
 };
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::kernels

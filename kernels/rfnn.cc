@@ -5,7 +5,7 @@
 
 #include "kernels/dense_kernels.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 
 const DenseKernels& KernelsFor(SimdLevel level) {
   static const bool supported[] = {SimdLevelSupported(SimdLevel::kScalar),
@@ -55,4 +55,4 @@ void RfnnValues(const DenseNet& net, const float* inputs, int n, float* values, 
   RfnnArgmax(net, decision, workspace, level);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::kernels

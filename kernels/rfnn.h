@@ -21,7 +21,7 @@
 #include "kernels/dense_net.h"
 #include "kernels/simd_level.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 
 struct RfnnBest {
   int index = -1;
@@ -60,4 +60,4 @@ RfnnBest RfnnAcrossNeurons(const DenseNet& net, const RfnnDecision& decision, fl
 void RfnnValues(const DenseNet& net, const float* inputs, int n, float* values, float* workspace,
                 SimdLevel level = ActiveSimdLevel());
 
-}  // namespace ed3r
+}  // namespace ed3r::kernels

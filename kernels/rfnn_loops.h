@@ -8,7 +8,7 @@
 #include "kernels/dense_kernels.h"
 #include "kernels/gemm_loops.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 // The block that works across candidates, held in registers while the weights are broadcast: output neurons x
@@ -258,4 +258,4 @@ RfnnBest AcrossNeurons(const DenseNet& net, const RfnnDecision& d, float* worksp
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::kernels

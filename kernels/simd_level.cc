@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 constexpr SimdLevel kLevels[] = {SimdLevel::kScalar, SimdLevel::kAvx2, SimdLevel::kAvx512};
@@ -75,4 +75,4 @@ SimdLevel ActiveSimdLevel() {
   return level;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::kernels

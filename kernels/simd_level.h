@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace ed3r {
+namespace ed3r::kernels {
 
 enum class SimdLevel { kScalar = 0, kAvx2 = 1, kAvx512 = 2 };
 
@@ -32,4 +32,4 @@ SimdLevel ParseSimdLevel(std::string_view text);
 // the variable is wrong, so that a program should call it once before it starts work. Thread-safe.
 SimdLevel ActiveSimdLevel();
 
-}  // namespace ed3r
+}  // namespace ed3r::kernels

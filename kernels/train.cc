@@ -12,7 +12,7 @@
 #include "kernels/dense_kernels.h"
 #include "kernels/rfnn.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 constexpr int kEvaluateRows = 1024;  // rows summed together by Evaluate: part of the definition of its result
@@ -236,4 +236,4 @@ void DenseTrainer::Restore(const float* parameters, const float* m, const float*
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::kernels

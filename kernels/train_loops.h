@@ -14,7 +14,7 @@
 #include "kernels/gemm_loops.h"
 #include "kernels/train.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 // relu, then inverted dropout.
@@ -250,4 +250,4 @@ void AdamBlock(const AdamState& s, int layer, int output_block) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::kernels

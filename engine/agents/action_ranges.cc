@@ -6,7 +6,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -45,9 +45,9 @@ TiltInterval TiltCommands(const ActionRanges& ranges, const AgentsConfig& agents
           std::clamp(tilt_rad + 0.5 * ranges.tilt_rad, 0.0, full_rad)};
 }
 
-MotionCommand DrawCommand(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad,
-                          Stream& stream) {
-  MotionCommand command;
+robot::MotionCommand DrawCommand(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad,
+                                 Stream& stream) {
+  robot::MotionCommand command;
   for (int axis = 0; axis < 3; ++axis)
     command.displacement_m[axis] = stream.Uniform(-ranges.axis_m, ranges.axis_m);
   command.turn_rad = stream.Uniform(-ranges.yaw_rad, ranges.yaw_rad);
@@ -56,12 +56,12 @@ MotionCommand DrawCommand(const ActionRanges& ranges, const AgentsConfig& agents
   return command;
 }
 
-MotionCommand Clamped(const MotionCommand& command, const ActionRanges& ranges, const AgentsConfig& agents,
-                      double tilt_rad) {
+robot::MotionCommand Clamped(const robot::MotionCommand& command, const ActionRanges& ranges,
+                             const AgentsConfig& agents, double tilt_rad) {
   if (!command.displacement_m.allFinite() || !std::isfinite(command.turn_rad) ||
       !std::isfinite(command.tilt_rad))
     throw UserError("a motion command is not finite");
-  MotionCommand inside = command;
+  robot::MotionCommand inside = command;
   for (int axis = 0; axis < 3; ++axis)
     inside.displacement_m[axis] = std::clamp(command.displacement_m[axis], -ranges.axis_m, ranges.axis_m);
   inside.turn_rad = std::clamp(command.turn_rad, -ranges.yaw_rad, ranges.yaw_rad);
@@ -70,4 +70,4 @@ MotionCommand Clamped(const MotionCommand& command, const ActionRanges& ranges, 
   return inside;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

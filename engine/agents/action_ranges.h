@@ -5,7 +5,7 @@
 #include "engine/core/random.h"
 #include "engine/robot/motion.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 struct ActionRanges {
   double axis_m = 0.0;    // each displacement lies in [-axis_m, axis_m]
@@ -25,11 +25,11 @@ struct TiltInterval {
 TiltInterval TiltCommands(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad);
 
 // A command drawn uniformly from the ranges. Takes exactly five draws.
-MotionCommand DrawCommand(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad,
-                          Stream& stream);
+robot::MotionCommand DrawCommand(const ActionRanges& ranges, const AgentsConfig& agents, double tilt_rad,
+                                 Stream& stream);
 
 // The command cut to the ranges, value by value. Throws UserError for one that is not finite.
-MotionCommand Clamped(const MotionCommand& command, const ActionRanges& ranges, const AgentsConfig& agents,
-                      double tilt_rad);
+robot::MotionCommand Clamped(const robot::MotionCommand& command, const ActionRanges& ranges,
+                             const AgentsConfig& agents, double tilt_rad);
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -9,14 +9,14 @@
 #include "engine/rfnn/direct_network.h"
 #include "engine/rfnn/model.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 // Networks, shared read-only; null where a strategy asks none. A direct one goes before one that scores actions.
 struct Networks {
-  const Model* rc = nullptr;
-  const Model* robot = nullptr;
-  const DirectNetwork* direct_rc = nullptr;
-  const DirectNetwork* direct_robot = nullptr;
+  const rfnn::Model* rc = nullptr;
+  const rfnn::Model* robot = nullptr;
+  const rfnn::DirectNetwork* direct_rc = nullptr;
+  const rfnn::DirectNetwork* direct_robot = nullptr;
 };
 
 struct AgentContext {
@@ -32,4 +32,4 @@ struct AgentContext {
 // max(epsilon_min, decay^mission) (R20); strategies that walk at random do not ask.
 double EpsilonOfMission(const AgentsConfig& agents, int mission);
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -1,6 +1,6 @@
 #include "engine/agents/early_completion.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 EarlyCompletion::EarlyCompletion(const AgentsConfig& agents)
     : agents_(agents), ranges_(ActionRanges::Full(agents)) {}
@@ -38,4 +38,4 @@ CompletionOrder EarlyCompletion::Next(double previous_scs) {
   return order;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

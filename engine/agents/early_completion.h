@@ -6,7 +6,7 @@
 #include "engine/agents/action_ranges.h"
 #include "engine/agents/decisions.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 // What the Algorithm orders for timestep k.
 struct CompletionOrder {
@@ -31,4 +31,4 @@ class EarlyCompletion {
   int low_count_ = 0;   // c_low
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -8,7 +8,7 @@
 #include "engine/agents/decisions.h"
 #include "engine/agents/views.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 inline constexpr std::array kExecutions = {Execution::kOffload, Execution::kFull, Execution::kQuantized};
 
@@ -56,4 +56,4 @@ class ExecutionPolicy {
   }
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -9,16 +9,16 @@
 #include "engine/rfnn/features.h"
 #include "engine/robot/motion.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
-using RcState = std::array<double, kRcStates>;
-using RcAction = std::array<float, kRcInputs - kRcStates>;
-using RobotState = std::array<double, kRobotStates>;
-using RobotAction = std::array<float, kRobotInputs - kRobotStates>;
+using RcState = std::array<double, rfnn::kRcStates>;
+using RcAction = std::array<float, rfnn::kRcInputs - rfnn::kRcStates>;
+using RobotState = std::array<double, rfnn::kRobotStates>;
+using RobotAction = std::array<float, rfnn::kRobotInputs - rfnn::kRobotStates>;
 
 RcState StateOf(const RcView& view);
-RcAction ActionOf(const MotionCommand& command);
+RcAction ActionOf(const robot::MotionCommand& command);
 RobotState StateOf(const RobotView& view);
 RobotAction ActionOf(Execution execution);
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -11,11 +11,11 @@
 #include "engine/agents/views.h"
 #include "engine/robot/motion.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 // The candidates of one greedy decision, for `ed3r explain`.
 struct CandidateTrace {
-  std::vector<MotionCommand> commands;
+  std::vector<robot::MotionCommand> commands;
   std::vector<double> rewards;  // predicted
   std::vector<int> admitted;    // indices that region avoidance left; empty where it left all
   int chosen = -1;
@@ -30,7 +30,7 @@ struct MotionQuestion {
 };
 
 struct MotionChoice {
-  MotionCommand command;
+  robot::MotionCommand command;
   MotionRule rule = MotionRule::kRandom;
   double epsilon = 1.0;  // in force: the question's where the policy explores by it
   double predicted_reward =
@@ -48,10 +48,10 @@ class MotionPolicy {
   virtual MotionChoice Choose(const MotionQuestion& question) = 0;
 
   // The reward that it expects of a command that was not its own choice; NaN where it expects none.
-  virtual double Predict(const RcView& view, const MotionCommand& command) {
+  virtual double Predict(const RcView& view, const robot::MotionCommand& command) {
     static_cast<void>(view), static_cast<void>(command);
     return std::numeric_limits<double>::quiet_NaN();
   }
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace ed3r {
+namespace ed3r::agents {
 
 RegionMemory::RegionMemory(const AgentsConfig& agents, const Eigen::Vector3d& size_m)
     : edge_m_(agents.region_size_m), visits_threshold_(agents.region_visits) {
@@ -82,4 +82,4 @@ double RegionMemory::DistanceToRegionM(std::size_t region, const Eigen::Vector3d
   return (position_m - inside_m).norm();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

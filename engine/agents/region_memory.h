@@ -13,7 +13,7 @@
 #include "engine/agents/decisions.h"
 #include "engine/config/agents.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 class RegionMemory {
  public:
@@ -48,4 +48,4 @@ class RegionMemory {
   std::vector<Region> regions_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -3,7 +3,7 @@
 #include "engine/core/check.h"
 #include "engine/core/phase.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 RemoteController::RemoteController(const AgentContext& context)
     : context_(context), completion_(context.config.agents), policy_(context.strategy.motion.make(context)) {}
@@ -33,7 +33,7 @@ MotionDecision RemoteController::ChooseMotion(const RcView& view, std::uint32_t 
   return decision;
 }
 
-MotionDecision RemoteController::Take(const RcView& view, const MotionCommand& command) {
+MotionDecision RemoteController::Take(const RcView& view, const robot::MotionCommand& command) {
   ED3R_CHECK(!order_.complete, "a command for a mission that is complete");
   if (order_.hover) return Hover(view);
   MotionDecision decision = Ordered();
@@ -59,4 +59,4 @@ MotionDecision RemoteController::Hover(const RcView& view) {
   return decision;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -13,11 +13,11 @@
 #include "engine/agents/motion_policy.h"
 #include "engine/agents/views.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 struct MotionDecision {
   bool complete = false;  // the mission ends here; no command
-  MotionCommand command;
+  robot::MotionCommand command;
   MotionRule rule = MotionRule::kRandom;
   ConfidenceBand band = ConfidenceBand::kNone;
   double epsilon = 1.0;
@@ -36,7 +36,7 @@ class RemoteController {
   // orders; Take makes the decision, unless the mission is complete. Where the Algorithm hovers, the command is not
   // asked for; elsewhere it is cut to the ranges of the order.
   const CompletionOrder& Observe(const RcView& view, std::uint32_t timestep);
-  MotionDecision Take(const RcView& view, const MotionCommand& command);
+  MotionDecision Take(const RcView& view, const robot::MotionCommand& command);
 
  private:
   MotionDecision Ordered() const;
@@ -48,4 +48,4 @@ class RemoteController {
   const std::unique_ptr<MotionPolicy> policy_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

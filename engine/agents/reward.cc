@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ed3r {
+namespace ed3r::agents {
 
 double Reward(const AgentsConfig& agents, double total_energy_j, double scs, double battery_j) {
   const double constraint_penalty =
@@ -13,4 +13,4 @@ double Reward(const AgentsConfig& agents, double total_energy_j, double scs, dou
   return -(agents.mu1 * total_energy_j / agents.energy_scale_j + agents.mu2 * penalty);             // Eq. 21
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

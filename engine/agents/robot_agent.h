@@ -10,7 +10,7 @@
 #include "engine/agents/views.h"
 #include "engine/core/phase.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 class RobotAgent {
  public:
@@ -29,4 +29,4 @@ class RobotAgent {
   const std::unique_ptr<ExecutionPolicy> policy_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

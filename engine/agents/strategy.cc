@@ -16,7 +16,7 @@
 #include "engine/core/check.h"
 #include "engine/core/suggest.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 namespace {
 
 template <class Policy>
@@ -98,4 +98,4 @@ const Strategy& FindStrategy(std::string_view name) {
   throw UserError(CheckStrategyName(name));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

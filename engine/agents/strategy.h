@@ -12,7 +12,7 @@
 #include "engine/agents/execution_policy.h"
 #include "engine/agents/motion_policy.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 struct AgentContext;
 
@@ -48,4 +48,4 @@ std::string CheckStrategyName(std::string_view name);
 // Throws UserError with that clause for an unknown name.
 const Strategy& FindStrategy(std::string_view name);
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -4,11 +4,11 @@
 
 #include "engine/robot/motion.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 // S_RC,k: as of the end of timestep k-1; zeros for the previous score and energy at k = 1 (R17).
 struct RcView {
-  Pose pose;
+  robot::Pose pose;
   double rc_distance_m = 0.0;
   double previous_scs = 0.0;
   double previous_energy_j = 0.0;
@@ -28,4 +28,4 @@ struct RobotView {
   double rate_ratio = 0.0;  // d_k / (b_max se_max), for the rules of RBS (R25)
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

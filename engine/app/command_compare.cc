@@ -20,7 +20,7 @@
 #include "studies/tables/layout.h"
 #include "studies/variants/variants.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -38,12 +38,13 @@ std::string LabelOf(const std::string& dir) {
 }
 
 // What keeps claims from being judged, a line for each run; none where all may be.
-std::vector<std::string> DepartureLines(const RunDepartures& departures,
+std::vector<std::string> DepartureLines(const report::RunDepartures& departures,
                                         const std::vector<std::string>& labels, bool claims) {
   std::vector<std::string> lines;
   for (const std::string& label : labels)
-    if (const Departures& of_run = departures.at(label); !of_run.PaperFlown())
-      lines.push_back(fmt::format("{}: not as in the paper: {}.", label, DepartureText(of_run.results)));
+    if (const report::Departures& of_run = departures.at(label); !of_run.PaperFlown())
+      lines.push_back(
+          fmt::format("{}: not as in the paper: {}.", label, report::DepartureText(of_run.results)));
   if (!lines.empty())
     lines.push_back(claims ? "The paper's claims are judged all the same (--claims)."
                            : "So the paper's claims are not judged; --claims judges them all the same.");
@@ -52,27 +53,28 @@ std::vector<std::string> DepartureLines(const RunDepartures& departures,
 
 std::string Wrapped(const std::vector<std::string>& lines) {
   std::string text;
-  for (const std::string& line : lines) text += Wrap(line, "", kTerminalWidth);
+  for (const std::string& line : lines) text += tables::Wrap(line, "", tables::kTerminalWidth);
   return lines.empty() ? text : text + '\n';
 }
 
-nlohmann::ordered_json JsonOf(const VariantStudy& study, const std::vector<std::string>& departures) {
+nlohmann::ordered_json JsonOf(const variants::VariantStudy& study,
+                              const std::vector<std::string>& departures) {
   nlohmann::ordered_json json = {{"runs", study.variants},
                                  {"departures", departures},
                                  {"differences", nlohmann::ordered_json::array()},
                                  {"changed_verdicts", nlohmann::ordered_json::array()}};
-  for (const VariantDifference& d : study.differences)
+  for (const variants::VariantDifference& d : study.differences)
     json["differences"].push_back({{"arm", d.arm},
                                    {"run", d.variant},
                                    {"metric", d.metric},
-                                   {"base", JsonNumber(d.base)},
-                                   {"difference", JsonNumber(d.difference)},
-                                   {"lo", JsonNumber(d.lo)},
-                                   {"hi", JsonNumber(d.hi)},
+                                   {"base", metrics::JsonNumber(d.base)},
+                                   {"difference", metrics::JsonNumber(d.difference)},
+                                   {"lo", metrics::JsonNumber(d.lo)},
+                                   {"hi", metrics::JsonNumber(d.hi)},
                                    {"pairs", d.pairs},
                                    {"base_networks", d.base_networks},
                                    {"networks", d.networks}});
-  for (const VerdictChange& change : study.changes)
+  for (const variants::VerdictChange& change : study.changes)
     json["changed_verdicts"].push_back({{"claim", change.claim},
                                         {"run", change.variant},
                                         {"base", NameOf(change.base)},
@@ -84,64 +86,65 @@ nlohmann::ordered_json JsonOf(const VariantStudy& study, const std::vector<std::
 nlohmann::ordered_json ManifestOf(const std::vector<std::string>& dirs,
                                   const std::vector<std::string>& labels) {
   nlohmann::ordered_json runs = nlohmann::ordered_json::object();
-  for (std::size_t i = 0; i < dirs.size(); ++i) runs[labels[i]] = ManifestJson(ReadProvenance(dirs[i]));
+  for (std::size_t i = 0; i < dirs.size(); ++i)
+    runs[labels[i]] = report::ManifestJson(report::ReadProvenance(dirs[i]));
   return runs;
 }
 
-void WritePage(const std::vector<ComparedRun>& runs, const VariantStudy& study,
+void WritePage(const std::vector<report::ComparedRun>& runs, const variants::VariantStudy& study,
                const std::vector<std::string>& departures, const Options& options) {
-  const FoundBundle found = FindWebBundle("report");
+  const report::FoundBundle found = report::FindWebBundle("report");
   if (!found.bundle) {
     fmt::print(stderr, "note: {}\n", found.why_not);
     return;
   }
   const std::string command = fmt::format("ed3r compare {} --out {}{}", fmt::join(options.dirs, " "),
                                           options.out, options.claims ? " --claims" : "");
-  WriteFile(
-      fs::path(options.out) / "index.html",
-      SelfContainedPage(fmt::format("{} compared", fmt::join(study.variants, ", ")), *found.bundle,
-                        ComparePageData(runs, study, departures, command),
-                        "<p>This page is a program: it needs scripts. The same is in compare.txt.</p>"));
+  WriteFile(fs::path(options.out) / "index.html",
+            report::SelfContainedPage(
+                fmt::format("{} compared", fmt::join(study.variants, ", ")), *found.bundle,
+                report::ComparePageData(runs, study, departures, command),
+                "<p>This page is a program: it needs scripts. The same is in compare.txt.</p>"));
 }
 
 int Compare(const Options& options) {
   if (options.dirs.size() < 2)
     throw UserError(fmt::format("compare: {} is one run; at least two are needed", options.dirs.front()));
-  std::vector<ArmData> arms;
-  std::vector<ComparedRun> runs;
+  std::vector<metrics::ArmData> arms;
+  std::vector<report::ComparedRun> runs;
   std::vector<std::string> labels;
   std::set<std::uint64_t> seeds;
-  RunDepartures departures;
+  report::RunDepartures departures;
   for (const std::string& dir : options.dirs) {
     const std::string label = LabelOf(dir);
     if (std::find(labels.begin(), labels.end(), label) != labels.end())
       throw UserError(
           fmt::format("{}: two of the runs are in folders called '{}'; their names must differ", dir, label));
     labels.push_back(label);
-    ResultReader reader(dir);
+    store::ResultReader reader(dir);
     reader.CheckWhole();
-    const RunResults run = LoadRun(dir);
+    const report::RunResults run = report::LoadRun(dir);
     seeds.insert(reader.Layout().seed);
-    if (!VariantsOf(run.arms).empty())
+    if (!variants::VariantsOf(run.arms).empty())
       throw UserError(fmt::format("{}: has variants of its own; 'ed3r report {}' compares them", dir, dir));
-    departures[label] = ReadDepartures(reader)[""];
-    for (ArmData& arm : AsVariant(run.arms, label)) arms.push_back(std::move(arm));
+    departures[label] = report::ReadDepartures(reader)[""];
+    for (metrics::ArmData& arm : variants::AsVariant(run.arms, label)) arms.push_back(std::move(arm));
     runs.push_back({label, dir, run});
   }
   const std::vector<std::string> notes = DepartureLines(departures, labels, options.claims);
-  VariantStudy study =
-      CompareVariants(arms, notes.empty() || options.claims ? Verdicts::kJudged : Verdicts::kLeftOut);
+  variants::VariantStudy study = variants::CompareVariants(
+      arms, notes.empty() || options.claims ? variants::Verdicts::kJudged : variants::Verdicts::kLeftOut);
   study.same_draws = seeds.size() == 1;
   if (study.differences.empty())
     throw UserError(
         fmt::format("{}: no arm of the other runs has the name of one of its arms", options.dirs.front()));
-  const std::string text = Wrapped(notes) + VariantText(study);
+  const std::string text = Wrapped(notes) + variants::VariantText(study);
   if (!options.out.empty()) {
     const fs::path out(options.out);
     MakeFolder(out);
     WriteFile(out / "compare.txt", text);
-    WriteFile(out / "differences.csv", DifferenceCsv(study));
-    WriteFile(out / "verdicts.csv", VariantVerdictCsv(study));
+    WriteFile(out / "differences.csv", variants::DifferenceCsv(study));
+    WriteFile(out / "verdicts.csv", variants::VariantVerdictCsv(study));
     WriteFile(out / "manifest.json", ManifestOf(options.dirs, labels).dump(2) + "\n");
     WritePage(runs, study, notes, options);
   }
@@ -173,4 +176,4 @@ Command AddCompare(Program& program) {
   return {parser, [options] { return Compare(*options); }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -17,7 +17,7 @@
 #include "studies/detection/scores.h"
 #include "studies/metrics/number_text.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -32,7 +32,7 @@ struct Confidences {
   std::vector<double> full, quantized;
 };
 
-Confidences Look(const DetectorPair& detectors, const FrameStack& frames) {
+Confidences Look(const perception::DetectorPair& detectors, const perception::FrameStack& frames) {
   const auto count = static_cast<std::size_t>(frames.frames);
   Confidences found{std::vector<double>(count), std::vector<double>(count)};
   detectors.full->Confidences(frames, found.full);
@@ -40,24 +40,25 @@ Confidences Look(const DetectorPair& detectors, const FrameStack& frames) {
   return found;
 }
 
-Json JsonOf(const DetectionScores& s) {
-  return {{"auc", JsonNumber(s.auc)},
-          {"accuracy", JsonNumber(s.accuracy)},
-          {"accuracy_lo", JsonNumber(s.accuracy_interval.lo)},
-          {"accuracy_hi", JsonNumber(s.accuracy_interval.hi)},
-          {"calibration_error", JsonNumber(s.calibration_error)},
+Json JsonOf(const detection::DetectionScores& s) {
+  return {{"auc", metrics::JsonNumber(s.auc)},
+          {"accuracy", metrics::JsonNumber(s.accuracy)},
+          {"accuracy_lo", metrics::JsonNumber(s.accuracy_interval.lo)},
+          {"accuracy_hi", metrics::JsonNumber(s.accuracy_interval.hi)},
+          {"calibration_error", metrics::JsonNumber(s.calibration_error)},
           {"true_positives", s.true_positives},
           {"false_negatives", s.false_negatives},
           {"false_positives", s.false_positives},
           {"true_negatives", s.true_negatives}};
 }
 
-Json JsonOf(const Difference& d) {
-  return {
-      {"mean", JsonNumber(d.value)}, {"lo", JsonNumber(d.interval.lo)}, {"hi", JsonNumber(d.interval.hi)}};
+Json JsonOf(const detection::Difference& d) {
+  return {{"mean", metrics::JsonNumber(d.value)},
+          {"lo", metrics::JsonNumber(d.interval.lo)},
+          {"hi", metrics::JsonNumber(d.interval.hi)}};
 }
 
-Json JsonOf(const DetectorDifference& d) {
+Json JsonOf(const detection::DetectorDifference& d) {
   return {{"auc", JsonOf(d.auc)},
           {"accuracy", JsonOf(d.accuracy)},
           {"cross_entropy", JsonOf(d.cross_entropy)},
@@ -71,7 +72,7 @@ std::string Number(double value, int width, int digits) {
                            : fmt::format("{:>{}.{}f}", value, width, digits);
 }
 
-std::string Row(const DetectionScores& s) {
+std::string Row(const detection::DetectionScores& s) {
   return fmt::format("{} {} ({}-{}) {:>5} {:>5} {:>5} {:>5} {}", Number(s.auc, 6, 3),
                      Number(100 * s.accuracy, 6, 1), Number(100 * s.accuracy_interval.lo, 5, 1),
                      Number(100 * s.accuracy_interval.hi, 5, 1), s.true_positives, s.false_negatives,
@@ -81,7 +82,8 @@ std::string Row(const DetectionScores& s) {
 enum class Better { kMore, kLess };
 
 // "-0.0006 (-0.0015 to 0.0002): not distinguishable": a difference in units of 1 / scale.
-std::string InWords(const Difference& d, double scale, int digits, const std::string& unit, Better better) {
+std::string InWords(const detection::Difference& d, double scale, int digits, const std::string& unit,
+                    Better better) {
   if (std::isnan(d.value)) return "none: it takes frames with and without fire";
   const std::string value = fmt::format("{:7.{}f}{}", scale * d.value, digits, unit);
   if (!d.interval.Exists()) return value + ": too few views for an interval";
@@ -92,8 +94,8 @@ std::string InWords(const Difference& d, double scale, int digits, const std::st
                      scale * d.interval.hi, digits, meaning);
 }
 
-void Print(const DetectorDifference& d) {
-  const bool few = d.accuracy.interval.Exists() && d.decided_differently < kFewDecidedDifferently;
+void Print(const detection::DetectorDifference& d) {
+  const bool few = d.accuracy.interval.Exists() && d.decided_differently < detection::kFewDecidedDifferently;
   fmt::print(
       "\nQuantized minus Full, same frames (95 %, views drawn again):\n"
       "  AUC           {}\n  accuracy      {}\n  cross-entropy {}\n"
@@ -103,35 +105,38 @@ void Print(const DetectorDifference& d) {
       few ? ", so few that the interval of the accuracy may be too narrow" : "");
 }
 
-int Evaluate(const Options& options, const DetectorPair& detectors) {
-  const FrameSet set = ReadFrameSet(options.path);
+int Evaluate(const Options& options, const perception::DetectorPair& detectors) {
+  const detection::FrameSet set = detection::ReadFrameSet(options.path);
   const Confidences found = Look(detectors, set.frames);
-  const std::vector<std::pair<std::string, std::vector<Group>>> tables = {
-      {"all", {All(set.labels)}},
-      {"world", ByWorld(set.labels)},
-      {"distance", ByDistance(set.labels)},
-      {"occlusion", ByOcclusion(set.labels)},
-      {"size", BySize(set.labels)}};
-  const auto compare = [&](const Group& group, int resamples) {
-    return SecondMinusFirst(found.full, found.quantized, set.labels, group.frames, resamples);
+  const std::vector<std::pair<std::string, std::vector<detection::Group>>> tables = {
+      {"all", {detection::All(set.labels)}},
+      {"world", detection::ByWorld(set.labels)},
+      {"distance", detection::ByDistance(set.labels)},
+      {"occlusion", detection::ByOcclusion(set.labels)},
+      {"size", detection::BySize(set.labels)}};
+  const auto compare = [&](const detection::Group& group, int resamples) {
+    return detection::SecondMinusFirst(found.full, found.quantized, set.labels, group.frames, resamples);
   };
-  const DetectorDifference difference = compare(All(set.labels), kManyResamples);
+  const detection::DetectorDifference difference =
+      compare(detection::All(set.labels), detection::kManyResamples);
   Json json;
   if (!options.json)
     fmt::print(
         "{} frames; positives of a band are compared with all negatives; 'fire' is said from confidence {} "
         "on\n"
         "\n{:<20} {:<9} {:>6} {:>6} {:^13} {:>5} {:>5} {:>5} {:>5} {:>6}\n",
-        set.frames.frames, kDecision, "", "", "AUC", "acc %", "(95 %)", "TP", "FN", "FP", "TN", "ECE");
+        set.frames.frames, detection::kDecision, "", "", "AUC", "acc %", "(95 %)", "TP", "FN", "FP", "TN",
+        "ECE");
   for (const auto& [title, groups] : tables)
-    for (const Group& group : groups) {
-      const DetectionScores full = ScoresOf(found.full, set.labels, group.frames);
-      const DetectionScores quantized = ScoresOf(found.quantized, set.labels, group.frames);
+    for (const detection::Group& group : groups) {
+      const detection::DetectionScores full = detection::ScoresOf(found.full, set.labels, group.frames);
+      const detection::DetectionScores quantized =
+          detection::ScoresOf(found.quantized, set.labels, group.frames);
       if (options.json) {
         json[title][group.name] = {{"frames", full.Frames()},
                                    {"full", JsonOf(full)},
                                    {"quantized", JsonOf(quantized)},
-                                   {"difference", JsonOf(compare(group, kSomeResamples))}};
+                                   {"difference", JsonOf(compare(group, detection::kSomeResamples))}};
         continue;
       }
       fmt::print("{:<20} {:<9} {}\n", group.name, "Full", Row(full));
@@ -153,7 +158,7 @@ class PictureTable {
     if (!json) fmt::print("{:<40} {:>9} {:>9}\n", "confidence of fire or smoke", "Full", "Quantized");
   }
 
-  void Add(const NamedPicture& picture, const Confidences& found) {
+  void Add(const detection::NamedPicture& picture, const Confidences& found) {
     ++read_;
     if (in_json_) {
       json_[picture.name] = {{"full", found.full[0]}, {"quantized", found.quantized[0]}};
@@ -170,7 +175,7 @@ class PictureTable {
     fmt::print(stderr, "{}\n", OneLine(why));
   }
 
-  int Finish(const PictureList& list) const {
+  int Finish(const detection::PictureList& list) const {
     // Names are bytes; what is no text among them is replaced.
     if (in_json_) fmt::print("{}\n", json_.dump(2, ' ', false, Json::error_handler_t::replace));
     if (list.passed_over > 0)
@@ -186,10 +191,10 @@ class PictureTable {
   std::int64_t read_ = 0, failed_ = 0;
 };
 
-int LookAtPictures(const Options& options, const DetectorPair& detectors) {
-  const PictureList list = ListPictures(options.path);
+int LookAtPictures(const Options& options, const perception::DetectorPair& detectors) {
+  const detection::PictureList list = detection::ListPictures(options.path);
   const auto look = [&](const std::string& path) {
-    NamedPicture picture = ReadNamedPicture(path);
+    detection::NamedPicture picture = detection::ReadNamedPicture(path);
     Confidences found = Look(detectors, picture.frame);
     return std::pair(std::move(picture), std::move(found));
   };
@@ -204,7 +209,7 @@ int LookAtPictures(const Options& options, const DetectorPair& detectors) {
     try {
       const auto [picture, found] = look(path);
       table.Add(picture, found);
-    } catch (const DetectorError& error) {
+    } catch (const perception::DetectorError& error) {
       table.AddFailure(path, fmt::format("{}: {}", path, error.what()));
     } catch (const UserError& error) {
       table.AddFailure(path, error.what());
@@ -228,8 +233,8 @@ void NoteBuiltin(const DetectorConfig& config) {
 int Detect(const Options& options) {
   Config config;
   ApplySettings(options.settings, Scope::kMission, config);
-  const DetectorPair detectors = LoadDetectors(config.perception.detector);
-  if (IsFrameSet(options.path)) return Evaluate(options, detectors);
+  const perception::DetectorPair detectors = perception::LoadDetectors(config.perception.detector);
+  if (detection::IsFrameSet(options.path)) return Evaluate(options, detectors);
   const int status = LookAtPictures(options, detectors);
   NoteBuiltin(config.perception.detector);
   return status;
@@ -250,4 +255,4 @@ Command AddDetect(Program& program) {
   return {parser, [options] { return Detect(*options); }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -11,7 +11,7 @@
 #include "engine/robot/energy.h"
 #include "engine/world/geometry.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 struct Check {
@@ -27,16 +27,16 @@ Check CheckRandom() {
 }
 
 Check CheckPhysics() {
-  const double hover_w = MovementPowerOf({}, {}, {}).hover_w;
+  const double hover_w = robot::MovementPowerOf({}, {}, {}).hover_w;
   return {"closed forms", std::abs(hover_w - 135.3) < 0.05,
           fmt::format("hover {:.2f} W, readings say 135.3 W", hover_w)};
 }
 
 Check CheckRays() {
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   mesh.vertices_m = {{-100, -100, 0}, {100, -100, 0}, {0, 100, 0}};
   mesh.triangles = {{0, 1, 2}};
-  const StaticGeometry geometry(std::move(mesh));
+  const world::StaticGeometry geometry(std::move(mesh));
   const double distance_m = geometry.Distance({0, 0, 7}, {0, 0, -1}, 30.0);
   return {"rays", std::abs(distance_m - 7.0) < 1e-4,
           fmt::format("ground found at {} m, it is at 7 m", distance_m)};
@@ -81,4 +81,4 @@ Command AddDoctor(Program& program) {
   return {parser, [json] { return Examine(*json); }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -13,7 +13,7 @@
 #include "engine/app/stored_run.h"
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -27,7 +27,7 @@ struct Options {
 };
 
 // Indices into the admitted candidates, best first.
-std::vector<std::size_t> Ranking(const CandidateTrace& trace) {
+std::vector<std::size_t> Ranking(const agents::CandidateTrace& trace) {
   std::vector<std::size_t> order(trace.rewards.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -35,19 +35,19 @@ std::vector<std::size_t> Ranking(const CandidateTrace& trace) {
   return order;
 }
 
-const MotionCommand& CommandAt(const CandidateTrace& trace, std::size_t admitted) {
+const robot::MotionCommand& CommandAt(const agents::CandidateTrace& trace, std::size_t admitted) {
   const std::size_t index =
       trace.admitted.empty() ? admitted : static_cast<std::size_t>(trace.admitted[admitted]);
   return trace.commands[index];
 }
 
-std::string CommandText(const MotionCommand& c) {
+std::string CommandText(const robot::MotionCommand& c) {
   return fmt::format("move ({:+6.2f}, {:+6.2f}, {:+6.2f}) m, turn {:+6.1f} deg, tilt {:4.1f} deg",
                      c.displacement_m.x(), c.displacement_m.y(), c.displacement_m.z(), c.turn_rad / kDegree,
                      c.tilt_rad / kDegree);
 }
 
-void PrintCandidates(const CandidateTrace& trace) {
+void PrintCandidates(const agents::CandidateTrace& trace) {
   if (trace.rewards.empty()) return;
   const std::vector<std::size_t> order = Ranking(trace);
   fmt::print("  {} candidates, {} admitted; predicted reward {:.4f} .. {:.4f}, median {:.4f}; the best:\n",
@@ -62,15 +62,16 @@ std::string Expected(const char* who, double reward) {
   return std::isnan(reward) ? "" : fmt::format(", {} expected {:.4f}", who, reward);
 }
 
-void PrintText(const MissionTask& task, const DecisionProbe& probe, const TimestepRecord& step) {
-  const RcView& rc = probe.rc_view;
+void PrintText(const mission::MissionTask& task, const mission::DecisionProbe& probe,
+               const mission::TimestepRecord& step) {
+  const agents::RcView& rc = probe.rc_view;
   fmt::print(
       "stage 1, RC: at ({:.1f}, {:.1f}, {:.1f}) m, {:.1f} m from the RC, previous SCS {:.3f}, energy {:.0f} "
       "J\n",
       rc.pose.position_m.x(), rc.pose.position_m.y(), rc.pose.position_m.z(), rc.rc_distance_m,
       rc.previous_scs, rc.previous_energy_j);
   fmt::print("  {}; epsilon {:.3f}\n", BandText(step.band), step.epsilon);
-  fmt::print("  chosen ({}): {}\n", NameOf(static_cast<MotionRule>(step.motion_rule)),
+  fmt::print("  chosen ({}): {}\n", NameOf(static_cast<agents::MotionRule>(step.motion_rule)),
              CommandText(probe.motion.command));
   PrintCandidates(probe.candidates);
   fmt::print("  arrived at ({:.1f}, {:.1f}, {:.1f}) m{}\n", step.x_m, step.y_m, step.z_m,
@@ -86,18 +87,19 @@ void PrintText(const MissionTask& task, const DecisionProbe& probe, const Timest
              Expected("the robot", step.robot_predicted_reward));
 }
 
-void PrintJson(const MissionTask& task, const DecisionProbe& probe, const TimestepRecord& step) {
+void PrintJson(const mission::MissionTask& task, const mission::DecisionProbe& probe,
+               const mission::TimestepRecord& step) {
   nlohmann::ordered_json object;
-  TimestepRecord::Describe(step, [&](std::string_view name, const auto& value) {
+  mission::TimestepRecord::Describe(step, [&](std::string_view name, const auto& value) {
     object["timestep"][std::string(name)] = value;  // NaN becomes null
   });
-  object["motion_rule"] = NameOf(static_cast<MotionRule>(step.motion_rule));
+  object["motion_rule"] = NameOf(static_cast<agents::MotionRule>(step.motion_rule));
   object["band"] = BandText(step.band);
   object["candidates"] = {{"drawn", probe.candidates.commands.size()},
                           {"admitted", probe.candidates.rewards.size()}};
   const std::vector<std::size_t> order = Ranking(probe.candidates);
   for (std::size_t i = 0; i < std::min(kShownCandidates, order.size()); ++i) {
-    const MotionCommand& c = CommandAt(probe.candidates, order[i]);
+    const robot::MotionCommand& c = CommandAt(probe.candidates, order[i]);
     object["candidates"]["best"].push_back({{"predicted_reward", probe.candidates.rewards[order[i]]},
                                             {"dx_m", c.displacement_m.x()},
                                             {"dy_m", c.displacement_m.y()},
@@ -111,24 +113,24 @@ void PrintJson(const MissionTask& task, const DecisionProbe& probe, const Timest
 
 int Explain(const Options& options) {
   StoredRun run(options.dir, options.cache);
-  const RunId id = run.Find(options.mission);
-  const StoredMission stored = run.Reader().LoadMission(id);
+  const sweep::RunId id = run.Find(options.mission);
+  const store::StoredMission stored = run.Reader().LoadMission(id);
   if (options.step < 1 || options.step > stored.record.timesteps)
     throw UserError(
         fmt::format("--step: '{}' is not allowed; allowed: 1 .. {}", options.step, stored.record.timesteps));
-  DecisionProbe probe;
+  mission::DecisionProbe probe;
   probe.timestep = static_cast<std::uint32_t>(options.step);
-  MissionTask task = run.Task(id);
+  mission::MissionTask task = run.Task(id);
   task.probe = &probe;
-  const MissionRecord flown = FlyMission(task);
+  const mission::MissionRecord flown = mission::FlyMission(task);
   ED3R_CHECK(probe.reached, "the mission ended before the stored one");
   if (!stored.keeps_timesteps && !run.Reader().IsStored(flown, stored))
     throw UserError(
         fmt::format("{}: flown again it differs, and its timesteps are not stored "
                     "(store.timesteps): there is nothing to explain",
                     options.mission));
-  const MissionRecord& told = stored.keeps_timesteps ? stored.record : flown;
-  const TimestepRecord& step = told.steps[static_cast<std::size_t>(options.step - 1)];
+  const mission::MissionRecord& told = stored.keeps_timesteps ? stored.record : flown;
+  const mission::TimestepRecord& step = told.steps[static_cast<std::size_t>(options.step - 1)];
   options.json ? PrintJson(task, probe, step) : PrintText(task, probe, step);
   return kDone;
 }
@@ -148,4 +150,4 @@ Command AddExplain(Program& program) {
   return {parser, [options] { return Explain(*options); }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

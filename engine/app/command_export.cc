@@ -15,7 +15,7 @@
 #include "engine/store/reader.h"
 #include "studies/export/export_tables.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 struct Options {
@@ -34,19 +34,20 @@ std::string FileName(const std::string& network) {
   return name + ".onnx";
 }
 
-void ExportNetworks(ResultReader& reader, const std::filesystem::path& folder) {
-  const FlownNetworks flown = reader.Networks();
+void ExportNetworks(store::ResultReader& reader, const std::filesystem::path& folder) {
+  const store::FlownNetworks flown = reader.Networks();
   if (flown.files.empty())
     throw UserError(fmt::format("{}: --networks: no trained network flew here", reader.dir()));
   MakeFolder(folder);
   std::set<std::string> done;
-  for (const NetworkUse& use : flown.uses) {
+  for (const store::NetworkUse& use : flown.uses) {
     if (!done.insert(use.sha256).second) continue;
-    const NetworkFile& file = flown.files.at(use.sha256);
-    const Model model = OpenModel(file.model, fmt::format("{}: network '{}'", reader.dir(), file.name),
-                                  use.agent == "rc" ? kRcNetwork : kRobotNetwork);
+    const store::NetworkFile& file = flown.files.at(use.sha256);
+    const rfnn::Model model =
+        rfnn::OpenModel(file.model, fmt::format("{}: network '{}'", reader.dir(), file.name),
+                        use.agent == "rc" ? rfnn::kRcNetwork : rfnn::kRobotNetwork);
     const std::filesystem::path path = folder / FileName(file.name);
-    WriteFile(path, OnnxBytes(model));
+    WriteFile(path, rfnn::OnnxBytes(model));
     fmt::print("{}: {}\n", path.string(), file.name);
   }
 }
@@ -54,15 +55,15 @@ void ExportNetworks(ResultReader& reader, const std::filesystem::path& folder) {
 int Export(const Options& options) {
   if (!options.csv && !options.numpy && !options.networks)
     throw UserError("ed3r export: nothing to write; allowed: --csv, --numpy, --networks, or several");
-  ResultReader reader(options.dir);
+  store::ResultReader reader(options.dir);
   const std::filesystem::path folder = options.out.empty() ? std::filesystem::path(options.dir) / "export"
                                                            : std::filesystem::path(options.out);
-  const auto tables = [&](ExportFormat format) {
-    for (const ExportedTable& table : ExportTables(reader, format, folder))
+  const auto tables = [&](exports::ExportFormat format) {
+    for (const exports::ExportedTable& table : exports::ExportTables(reader, format, folder))
       fmt::print("{}: {}\n", table.file.string(), Counted(table.rows, "row"));
   };
-  if (options.csv) tables(ExportFormat::kCsv);
-  if (options.numpy) tables(ExportFormat::kNumpy);
+  if (options.csv) tables(exports::ExportFormat::kCsv);
+  if (options.numpy) tables(exports::ExportFormat::kNumpy);
   if (options.networks) ExportNetworks(reader, folder);
   return kDone;
 }
@@ -86,4 +87,4 @@ Command AddExport(Program& program) {
   return {parser, [options] { return Export(*options); }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -15,12 +15,12 @@
 #include "studies/fit/fit_text.h"
 #include "studies/fit/self_check.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 struct Options {
-  FitOptions fit;
-  SelfCheckOptions self_check{.model = "momentum", .truth = {}, .fits = 0, .log = {}};
+  fit::FitOptions fit;
+  fit::SelfCheckOptions self_check{.model = "momentum", .truth = {}, .fits = 0, .log = {}};
   std::string perception;  // run directory
   std::vector<std::string> set;
   std::string battery;
@@ -30,30 +30,31 @@ struct Options {
 };
 
 int SelfCheck(const Options& options) {
-  const SelfCheckReport report = RunSelfCheck(options.self_check);
+  const fit::SelfCheckReport report = fit::RunSelfCheck(options.self_check);
   if (options.json)
-    fmt::print("{}\n", ToJson(report).dump(2));
+    fmt::print("{}\n", fit::ToJson(report).dump(2));
   else
-    PrintSelfCheck(report, std::cout);
+    fit::PrintSelfCheck(report, std::cout);
   return kDone;
 }
 
 int FitPerception(const Options& options) {
   const PerceptionLooks found = LooksOfRun(options.perception);
-  const ProfileFit fit = FitProfile(found.looks, found.configured);
+  const perception_fit::ProfileFit fit = perception_fit::FitProfile(found.looks, found.configured);
   if (!options.out.empty()) {
     const std::filesystem::path folder(options.out);
     MakeFolder(folder);
-    WriteFile(folder / "perception.yaml", ProfileFitYaml(fit, options.perception));
-    WriteFile(folder / "perception.json", ProfileFitJson(fit).dump(2) + "\n");
-    WriteFile(folder / "looks.csv", LooksCsv(found.looks, fit));
+    WriteFile(folder / "perception.yaml", perception_fit::ProfileFitYaml(fit, options.perception));
+    WriteFile(folder / "perception.json", perception_fit::ProfileFitJson(fit).dump(2) + "\n");
+    WriteFile(folder / "looks.csv", perception_fit::LooksCsv(found.looks, fit));
   }
-  fmt::print("{}\n", options.json ? ProfileFitJson(fit).dump(2) : ProfileFitText(fit));
+  fmt::print("{}\n", options.json ? perception_fit::ProfileFitJson(fit).dump(2)
+                                  : perception_fit::ProfileFitText(fit));
   return kDone;
 }
 
 int BatteryOf(const std::string& text) {
-  if (text == "all") return kAllBatteries;
+  if (text == "all") return flight_logs::kAllBatteries;
   int number = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || stop != text.data() + text.size() || number < 0 || number > 255)
@@ -74,18 +75,18 @@ int Fit(Options options) {
     options.fit.robot.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
   }
   if (!options.battery.empty()) options.fit.reading.battery = BatteryOf(options.battery);
-  const FitReport report = RunFit(options.fit);
-  DrawResult drawn;
+  const fit::FitReport report = fit::RunFit(options.fit);
+  figures::DrawResult drawn;
   if (!options.out.empty()) {
-    WriteFitOutputs(report, options.out);
-    if (!options.no_figures) drawn = DrawFigures(options.out, "plot_fit.py");
+    fit::WriteFitOutputs(report, options.out);
+    if (!options.no_figures) drawn = figures::DrawFigures(options.out, "plot_fit.py");
   }
   if (options.json)
-    fmt::print("{}\n", ToJson(report).dump(2));
+    fmt::print("{}\n", fit::ToJson(report).dump(2));
   else
-    PrintReport(report, std::cout);
-  if (drawn.outcome != Drawing::kDone) fmt::print(stderr, "no figures: {}\n", drawn.message);
-  return drawn.outcome == Drawing::kFailed ? kFailedInside : kDone;
+    fit::PrintReport(report, std::cout);
+  if (drawn.outcome != figures::Drawing::kDone) fmt::print(stderr, "no figures: {}\n", drawn.message);
+  return drawn.outcome == figures::Drawing::kFailed ? kFailedInside : kDone;
 }
 
 }  // namespace
@@ -126,4 +127,4 @@ Command AddFit(Program& program) {
   return {parser, [options] { return Fit(*options); }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

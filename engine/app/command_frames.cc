@@ -16,14 +16,14 @@
 #include "engine/perception/render/renderer.h"
 #include "engine/perception/render/training_views.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr int kMaxViews = 1000000;
 constexpr int kEnlarged = 8;
-constexpr PictureSize kLarge{960, 540};
+constexpr perception::PictureSize kLarge{960, 540};
 
 struct Options {
   std::string out, size;
@@ -35,9 +35,9 @@ struct Options {
   std::uint64_t seed = 20260101;
 };
 
-PictureSize SizeOf(const Options& options, const Config& config) {
+perception::PictureSize SizeOf(const Options& options, const Config& config) {
   if (options.size.empty()) return {config.perception.render.width_px, config.perception.render.height_px};
-  PictureSize size{0, 0};
+  perception::PictureSize size{0, 0};
   const char* const end = options.size.data() + options.size.size();
   const auto width = std::from_chars(options.size.data(), end, size.width_px);
   if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
@@ -57,7 +57,7 @@ void CheckCount(const char* option, int value, int min, int max) {
 // The frames as one NumPy array (NPY 1.0, uint8, N x H x W x 3, C order), written as they come.
 class FrameFile {
  public:
-  FrameFile(const fs::path& path, int frames, PictureSize size) : file_(path) {
+  FrameFile(const fs::path& path, int frames, perception::PictureSize size) : file_(path) {
     std::string header = fmt::format("{{'descr': '|u1', 'fortran_order': False, 'shape': ({}, {}, {}, 3), }}",
                                      frames, size.height_px, size.width_px);
     // Magic, version and length take 10 bytes; the data begin at a multiple of 64.
@@ -69,7 +69,7 @@ class FrameFile {
     Write(start.data(), start.size());
     Write(header.data(), header.size());
   }
-  void Append(const FrameStack& stack) { Write(stack.rgb.data(), stack.rgb.size()); }
+  void Append(const perception::FrameStack& stack) { Write(stack.rgb.data(), stack.rgb.size()); }
   // SHA-256 of the whole file.
   std::string Close() {
     file_.Commit();
@@ -93,10 +93,10 @@ class DataSet {
     CheckCount("--frames", options.frames, 1, config.sensing.Frames());
     CheckCount("--pictures", options.pictures, 0, 1000);
     for (const std::string& file : options.worlds) {
-      worlds_.push_back(Scene::Load(file));
+      worlds_.push_back(world::Scene::Load(file));
       if (worlds_.back()->Sites().empty())
         throw UserError(file + ": a world without fire sites cannot be used here");
-      scenes_.push_back(std::make_shared<TraceScene>(*worlds_.back()));
+      scenes_.push_back(std::make_shared<perception::TraceScene>(*worlds_.back()));
     }
     for (int i = 0; i < options.frames; ++i) numbers_.push_back(i * config.sensing.Frames() / options.frames);
   }
@@ -119,17 +119,17 @@ class DataSet {
  private:
   void WriteView(int view, FrameFile& frames, std::string& labels) {
     const auto number = static_cast<std::uint32_t>(view);
-    const ViewPlan plan = PlanView(scenes_, config_, options_.seed, number);
+    const perception::ViewPlan plan = perception::PlanView(scenes_, config_, options_.seed, number);
     const auto world = static_cast<std::size_t>(plan.world);
-    const Renderer renderer(scenes_[world], plan.site, config_.perception, config_.sensing, options_.seed,
-                            number);
-    const SensingFrames sensed = renderer.Sense(plan.pose, 1, numbers_, size_);
+    const perception::Renderer renderer(scenes_[world], plan.site, config_.perception, config_.sensing,
+                                        options_.seed, number);
+    const perception::SensingFrames sensed = renderer.Sense(plan.pose, 1, numbers_, size_);
     frames.Append(sensed.frames);
-    const GroundTruth& truth = sensed.truth;
+    const perception::GroundTruth& truth = sensed.truth;
     const bool fire = truth.FireInView();
     with_fire_ += fire ? 1 : 0;
-    const Scene& scene = *worlds_[world];
-    const std::string props = PropsInView(renderer, scene, plan.pose, config_.sensing);
+    const world::Scene& scene = *worlds_[world];
+    const std::string props = perception::PropsInView(renderer, scene, plan.pose, config_.sensing);
     for (int i = 0; i < options_.frames; ++i)
       labels += fmt::format("{},{},{},\"{}\",\"{}\",{:.1f},{},{},{:.3f},{},{:.1f},{}\n",
                             view * options_.frames + i, view, numbers_[static_cast<std::size_t>(i)],
@@ -139,11 +139,12 @@ class DataSet {
     if (view < options_.pictures) WritePictures(view, sensed.frames, renderer, plan.pose);
   }
 
-  void WritePictures(int view, const FrameStack& frames, const Renderer& renderer, const Pose& pose) const {
+  void WritePictures(int view, const perception::FrameStack& frames, const perception::Renderer& renderer,
+                     const robot::Pose& pose) const {
     const std::string stem = (fs::path(options_.out) / fmt::format("view_{:05}", view)).string();
-    WriteFrame(frames, 0, stem + ".png", size_.width_px <= 240 ? kEnlarged : 1);
+    perception::WriteFrame(frames, 0, stem + ".png", size_.width_px <= 240 ? kEnlarged : 1);
     const int first[] = {0};
-    WriteFrame(renderer.Sense(pose, 1, first, kLarge).frames, 0, stem + "_large.png");
+    perception::WriteFrame(renderer.Sense(pose, 1, first, kLarge).frames, 0, stem + "_large.png");
   }
 
   void WriteManifest(const fs::path& out, const std::string& sha256) const {
@@ -167,9 +168,9 @@ class DataSet {
 
   const Options& options_;
   const Config& config_;
-  PictureSize size_;
-  std::vector<std::shared_ptr<const Scene>> worlds_;
-  std::vector<std::shared_ptr<const TraceScene>> scenes_;
+  perception::PictureSize size_;
+  std::vector<std::shared_ptr<const world::Scene>> worlds_;
+  std::vector<std::shared_ptr<const perception::TraceScene>> scenes_;
   std::vector<int> numbers_;
   int with_fire_ = 0;
 };
@@ -201,4 +202,4 @@ Command AddFrames(Program& program) {
   return {parser, [options] { return WriteFrames(*options); }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::app {
 
 Argument& Argument::Required() {
   option_->required();
@@ -69,4 +69,4 @@ CommandLine Program::AddCommand(const std::string& name, const std::string& abou
   return CommandLine(program_->add_subcommand(name, about));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

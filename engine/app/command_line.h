@@ -10,7 +10,7 @@ class App;
 class Option;
 }  // namespace CLI
 
-namespace ed3r {
+namespace ed3r::app {
 
 // An option or a positional argument that was just added; its limits are chained to it.
 class Argument {
@@ -55,4 +55,4 @@ class Program {
   CLI::App* program_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -10,7 +10,7 @@
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 struct Options {
@@ -20,7 +20,7 @@ struct Options {
 
 std::string StrategyNames() {
   std::vector<std::string_view> names;
-  for (const Strategy& strategy : Strategies()) names.push_back(strategy.name);
+  for (const agents::Strategy& strategy : agents::Strategies()) names.push_back(strategy.name);
   return fmt::format("{}", fmt::join(names, " | "));
 }
 
@@ -86,4 +86,4 @@ Command AddParams(Program& program) {
           }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -8,7 +8,7 @@
 #include "engine/radio/link.h"
 #include "engine/robot/energy.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 struct Row {
@@ -24,24 +24,27 @@ struct Options {
 };
 
 std::vector<Row> ClosedForms(const Config& c) {
-  const MovementPower power = MovementPowerOf(c.robot, c.environment, c.energy);
-  const Link link =
-      EvaluateLink(c.radio, c.point.radio_distance_m, c.point.radio_bandwidth_hz, c.point.radio_shadowing_db);
-  const double payload_byte = PayloadByte(c.sensing);
-  const ComputationCost full = Computation(c.cpu, c.sensing, c.cpu.full_gflop, c.point.cpu_frequency_hz);
-  const ComputationCost quantized =
-      Computation(c.cpu, c.sensing, c.cpu.quantized_gflop, c.point.cpu_frequency_hz);
+  const robot::MovementPower power = robot::MovementPowerOf(c.robot, c.environment, c.energy);
+  const radio::Link link = radio::EvaluateLink(c.radio, c.point.radio_distance_m, c.point.radio_bandwidth_hz,
+                                               c.point.radio_shadowing_db);
+  const double payload_byte = robot::PayloadByte(c.sensing);
+  const robot::ComputationCost full =
+      robot::Computation(c.cpu, c.sensing, c.cpu.full_gflop, c.point.cpu_frequency_hz);
+  const robot::ComputationCost quantized =
+      robot::Computation(c.cpu, c.sensing, c.cpu.quantized_gflop, c.point.cpu_frequency_hz);
   return {
       {"hover_power_w", power.hover_w, "W", "P_hov (R1)"},
       {"horizontal_power_w", power.horizontal_w, "W", "P_hor (R2)"},
       {"ascent_power_w", power.ascent_w, "W", "P_ver upwards (R3)"},
       {"descent_power_w", power.descent_w, "W", "P_ver downwards (R3)"},
-      {"sensing_energy_j", SensingEnergyJ(c.sensing), "J", "E_sensing of one sensing period (Eq. 3, R6)"},
+      {"sensing_energy_j", robot::SensingEnergyJ(c.sensing), "J",
+       "E_sensing of one sensing period (Eq. 3, R6)"},
       {"battery_j", c.robot.BatteryJ(), "J", "beta_max (R8)"},
       {"transmit_power_dbm", link.transmit_power_dbm, "dBm", "p_k (R10)"},
       {"rate_bps", link.rate_bps, "bit/s", "d_k (R11)"},
-      {"transmission_time_s", TransmissionTimeS(payload_byte, link), "s", "T_transmission (Eq. 8)"},
-      {"transmission_energy_j", TransmissionEnergyJ(payload_byte, link), "J", "E_transmission (Eq. 9)"},
+      {"transmission_time_s", radio::TransmissionTimeS(payload_byte, link), "s", "T_transmission (Eq. 8)"},
+      {"transmission_energy_j", radio::TransmissionEnergyJ(payload_byte, link), "J",
+       "E_transmission (Eq. 9)"},
       {"full_time_s", full.time_s, "s", "T_computation, Full CNN (Eq. 5)"},
       {"full_energy_j", full.energy_j, "J", "E_computation, Full CNN (Eq. 6)"},
       {"quantized_time_s", quantized.time_s, "s", "T_computation, Quantized CNN (Eq. 5)"},
@@ -78,4 +81,4 @@ Command AddPhysics(Program& program) {
   return {parser, [options] { return Print(*options); }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -11,7 +11,7 @@
 #include "engine/app/words.h"
 #include "engine/schedule/training_stage.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 struct Options {
@@ -19,20 +19,20 @@ struct Options {
   bool json = false;
 };
 
-double ExpectedWallS(const Stage& stage, int threads) { return ExpectedCoreS(stage) / threads; }
+double ExpectedWallS(const sweep::Stage& stage, int threads) { return ExpectedCoreS(stage) / threads; }
 
-void PrintJson(const SweepPlan& plan, int threads) {
+void PrintJson(const sweep::SweepPlan& plan, int threads) {
   nlohmann::ordered_json object = {
       {"name", plan.name}, {"question", plan.question}, {"seed", plan.seed}, {"missions", plan.Missions()}};
-  for (const Stage& stage : plan.stages) {
+  for (const sweep::Stage& stage : plan.stages) {
     nlohmann::ordered_json arms = nlohmann::ordered_json::array();
-    for (const Arm& arm : stage.arms) {
+    for (const sweep::Arm& arm : stage.arms) {
       nlohmann::ordered_json settings = nlohmann::ordered_json::object();
       for (const auto& [key, value] : arm.settings) settings[key] = value;
       arms.push_back({{"name", arm.name}, {"settings", settings}});
     }
     object["stages"].push_back({{"name", stage.name},
-                                {"kind", stage.kind == StageKind::kTrain ? "train" : "fly"},
+                                {"kind", stage.kind == sweep::StageKind::kTrain ? "train" : "fly"},
                                 {"after", stage.after},
                                 {"missions_per_arm", stage.missions},
                                 {"timesteps", NameOf(stage.timesteps)},
@@ -42,24 +42,24 @@ void PrintJson(const SweepPlan& plan, int threads) {
   fmt::print("{}\n", object.dump(2));
 }
 
-void PrintText(const SweepPlan& plan, int threads) {
+void PrintText(const sweep::SweepPlan& plan, int threads) {
   fmt::print("{}: {}\nseed {}, {}\n", plan.name, plan.question, plan.seed,
              Counted(plan.Missions(), "mission"));
-  for (const Stage& stage : plan.stages) {
+  for (const sweep::Stage& stage : plan.stages) {
     fmt::print("\nstage {}", stage.name);
     for (std::size_t i = 0; i < stage.after.size(); ++i)
       fmt::print("{}{}", i == 0 ? " after " : ", ", stage.after[i]);
-    if (stage.kind == StageKind::kTrain) {
+    if (stage.kind == sweep::StageKind::kTrain) {
       fmt::print(": trains the networks that later stages ask for, unless the cache holds them\n");
       continue;
     }
     fmt::print(
         ": {} x {}, about {:.1f} min on {}\n", Counted(static_cast<std::int64_t>(stage.arms.size()), "arm"),
         Counted(stage.missions, "mission"), ExpectedWallS(stage, threads) / 60.0, Counted(threads, "thread"));
-    if (stage.timesteps != KeptTimesteps::kAll)
+    if (stage.timesteps != sweep::KeptTimesteps::kAll)
       fmt::print("  stores timesteps of {} missions\n",
-                 stage.timesteps == KeptTimesteps::kNone ? "no" : "failed");
-    for (const Arm& arm : stage.arms) {
+                 stage.timesteps == sweep::KeptTimesteps::kNone ? "no" : "failed");
+    for (const sweep::Arm& arm : stage.arms) {
       std::string settings;
       for (const auto& [key, value] : arm.settings) settings += fmt::format("  {}={}", key, value);
       fmt::print("  {:<14}{}\n", arm.name, settings);
@@ -76,12 +76,12 @@ Command AddPlan(Program& program) {
   options->sweep.AddTo(parser);
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
-            const SweepPlan plan = options->sweep.Load();
-            CheckTraining(plan);
+            const sweep::SweepPlan plan = options->sweep.Load();
+            schedule::CheckTraining(plan);
             const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
             options->json ? PrintJson(plan, threads) : PrintText(plan, threads);
             return kDone;
           }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -17,7 +17,7 @@
 #include "studies/metrics/number_text.h"
 #include "studies/report/web_page.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 struct Options {
@@ -28,13 +28,13 @@ struct Options {
   std::string beside;
 };
 
-class TraceFile : public TraceSink {
+class TraceFile : public robot::TraceSink {
  public:
   // `also` hears the same; none: nullptr.
-  TraceFile(const std::filesystem::path& path, TraceSink* also) : file_(path), also_(also) {
+  TraceFile(const std::filesystem::path& path, robot::TraceSink* also) : file_(path), also_(also) {
     file_.Write("timestep,time_s,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps,yaw_rad\n");
   }
-  void Record(const TraceSample& s) override {
+  void Record(const robot::TraceSample& s) override {
     file_.Write(fmt::format("{},{},{},{},{},{},{},{},{}\n", s.timestep, s.time_s, s.position_m.x(),
                             s.position_m.y(), s.position_m.z(), s.velocity_mps.x(), s.velocity_mps.y(),
                             s.velocity_mps.z(), s.yaw_rad));
@@ -44,28 +44,28 @@ class TraceFile : public TraceSink {
 
  private:
   AtomicFile file_;
-  TraceSink* also_;
+  robot::TraceSink* also_;
 };
 
-std::string CellOf(std::string_view, double value) { return CsvNumber(value); }
+std::string CellOf(std::string_view, double value) { return metrics::CsvNumber(value); }
 
 std::string CellOf(std::string_view column, std::int64_t value) {
   const std::string_view name = CodeName(column, value);
   return name.empty() ? fmt::format("{}", value) : std::string(name);
 }
 
-void WriteSteps(const MissionRecord& record, const std::filesystem::path& path) {
+void WriteSteps(const mission::MissionRecord& record, const std::filesystem::path& path) {
   std::string file;
   char separator = '\0';
-  const TimestepRecord columns;
-  TimestepRecord::Describe(columns, [&](std::string_view name, const auto&) {
+  const mission::TimestepRecord columns;
+  mission::TimestepRecord::Describe(columns, [&](std::string_view name, const auto&) {
     if (separator != '\0') file += separator;
     file += name;
     separator = ',';
   });
-  for (const TimestepRecord& step : record.steps) {
+  for (const mission::TimestepRecord& step : record.steps) {
     separator = '\n';
-    TimestepRecord::Describe(step, [&](std::string_view name, const auto& value) {
+    mission::TimestepRecord::Describe(step, [&](std::string_view name, const auto& value) {
       file += separator;
       file += CellOf(name, value);
       separator = ',';
@@ -82,8 +82,8 @@ void CheckFrames(const std::vector<int>& frames, std::int64_t timesteps) {
 }
 
 // The viewer of one mission, or of two on one clock, as one file.
-void WriteViewer(StoredRun& run, const Options& options, const Scene& scene, const WebBundle& bundle,
-                 const std::filesystem::path& path) {
+void WriteViewer(StoredRun& run, const Options& options, const world::Scene& scene,
+                 const report::WebBundle& bundle, const std::filesystem::path& path) {
   nlohmann::ordered_json data = {{"format", 1},
                                  {"run", run.Plan().name},
                                  {"world", ViewerWorld(scene)},
@@ -91,13 +91,14 @@ void WriteViewer(StoredRun& run, const Options& options, const Scene& scene, con
   if (!options.beside.empty()) data["missions"].push_back(ViewerMission(run, options.beside));
   std::string title = options.mission;
   if (!options.beside.empty()) title += " beside " + options.beside;
-  WriteFile(path, SelfContainedPage(title + " – ED³R mission", bundle, data,
-                                    "<p>The viewer is a program: it needs scripts. 'ed3r replay' without "
-                                    "--html writes the mission's map and tables.</p>"));
+  WriteFile(path,
+            report::SelfContainedPage(title + " – ED³R mission", bundle, data,
+                                      "<p>The viewer is a program: it needs scripts. 'ed3r replay' without "
+                                      "--html writes the mission's map and tables.</p>"));
 }
 
 // Two missions are shown in one world.
-void CheckBeside(StoredRun& run, const Options& options, const Scene& scene) {
+void CheckBeside(StoredRun& run, const Options& options, const world::Scene& scene) {
   if (options.beside.empty()) return;
   if (!options.html) throw UserError("--beside: is of --html, the viewer of two missions");
   if (&run.Task(run.Find(options.beside)).scene != &scene)
@@ -105,25 +106,25 @@ void CheckBeside(StoredRun& run, const Options& options, const Scene& scene) {
         fmt::format("--beside {}: flies in another world than {}", options.beside, options.mission));
 }
 
-WebBundle ViewerBundle() {
-  const FoundBundle found = FindWebBundle("viewer");
+report::WebBundle ViewerBundle() {
+  const report::FoundBundle found = report::FindWebBundle("viewer");
   if (!found.bundle) throw UserError("--html: " + found.why_not);
   return *found.bundle;
 }
 
 int Replay(const Options& options) {
   StoredRun run(options.dir, options.cache);
-  const RunId id = run.Find(options.mission);
-  const StoredMission stored = run.Reader().LoadMission(id);
+  const sweep::RunId id = run.Find(options.mission);
+  const store::StoredMission stored = run.Reader().LoadMission(id);
   CheckFrames(options.frames, stored.record.timesteps);  // before anything is flown or written
   std::string name = options.mission;
   for (char& c : name)
     if (c == '/') c = '-';
   const std::filesystem::path out = options.out.empty() ? std::filesystem::path(options.dir) / "replay" / name
                                                         : std::filesystem::path(options.out);
-  MissionTask task = run.Task(id);
+  mission::MissionTask task = run.Task(id);
   CheckBeside(run, options, task.scene);
-  std::optional<WebBundle> viewer;
+  std::optional<report::WebBundle> viewer;
   if (options.html) viewer = ViewerBundle();
   std::optional<MissionPictures> pictures;
   if (!options.frames.empty()) pictures.emplace(task);
@@ -133,21 +134,21 @@ int Replay(const Options& options) {
 
   TraceFile trace(out / "trace.csv", film ? &*film : nullptr);
   task.trace = &trace;
-  const MissionRecord flown = FlyMission(task);
+  const mission::MissionRecord flown = mission::FlyMission(task);
   const bool identical = run.Reader().IsStored(flown, stored);
   trace.Commit();
   WriteSteps(flown, out / "timesteps.csv");
   std::vector<Eigen::Vector3d> path_m = {{flown.start_x_m, flown.start_y_m, flown.start_z_m}};
-  for (const TimestepRecord& step : flown.steps) path_m.emplace_back(step.x_m, step.y_m, step.z_m);
-  WriteMapPicture(task.scene, (out / "map.png").string(),
-                  {.path_m = path_m, .site = static_cast<int>(flown.site)});
+  for (const mission::TimestepRecord& step : flown.steps) path_m.emplace_back(step.x_m, step.y_m, step.z_m);
+  world::WriteMapPicture(task.scene, (out / "map.png").string(),
+                         {.path_m = path_m, .site = static_cast<int>(flown.site)});
   for (const int k : options.frames)
     if (k <= flown.timesteps)  // a flight that differs may be shorter
       fmt::print("{}", pictures->Write(flown, k, (out / fmt::format("step{:03}", k)).string()));
   if (viewer) WriteViewer(run, options, task.scene, *viewer, out / "mission.html");
   if (film) fmt::print("{}", film->Write(flown, options.mission + " of " + run.Plan().name));
   fmt::print("{}: {} in {}, {:.1f} s, {:.2f} kJ; {}\n", options.mission,
-             NameOf(static_cast<Outcome>(flown.outcome)), Counted(flown.timesteps, "timestep"),
+             NameOf(static_cast<mission::Outcome>(flown.outcome)), Counted(flown.timesteps, "timestep"),
              flown.duration_s, flown.total_j / 1000.0,
              identical ? "identical to the stored record" : "DIFFERS from the stored record");
   fmt::print("{}: trace.csv, timesteps.csv, map.png{}\n", out.string(), viewer ? ", mission.html" : "");
@@ -181,4 +182,4 @@ Command AddReplay(Program& program) {
   return {parser, [options] { return Replay(*options); }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

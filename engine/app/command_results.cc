@@ -23,7 +23,7 @@
 #include "studies/report/report.h"
 #include "studies/report/report_folder.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 struct DirOptions {
@@ -43,31 +43,31 @@ constexpr std::uintmax_t kCheckedBytes = 50'000'000;
 
 struct Check {
   bool done = false;
-  std::vector<DamagedMission> damage;
+  std::vector<store::DamagedMission> damage;
 };
 
-Check CheckOf(ResultReader& reader) {
-  if (std::filesystem::file_size(std::filesystem::path(reader.dir()) / kResultsFile) > kCheckedBytes)
+Check CheckOf(store::ResultReader& reader) {
+  if (std::filesystem::file_size(std::filesystem::path(reader.dir()) / store::kResultsFile) > kCheckedBytes)
     return {};
   return {true, reader.FindDamage()};
 }
 
-void PrintStatusJson(ResultReader& reader, const Check& check) {
+void PrintStatusJson(store::ResultReader& reader, const Check& check) {
   nlohmann::ordered_json object = {{"name", reader.Layout().name}, {"arms", ArmsJson(reader.Status())}};
-  const std::vector<FailedMission> failures = reader.Failures();
+  const std::vector<store::FailedMission> failures = reader.Failures();
   object["failure_kinds"] = FailureKindsJson(failures);
   object["failures"] = FailuresJson(reader.Layout(), failures);
   object["checked"] = check.done;
   object["damaged"] = nlohmann::ordered_json::array();
-  for (const DamagedMission& damage : check.damage)
+  for (const store::DamagedMission& damage : check.damage)
     object["damaged"].push_back({{"mission", damage.name}, {"problem", damage.what}});
   fmt::print("{}\n", object.dump(2));
 }
 
-void PrintStatus(ResultReader& reader, const Check& check) {
+void PrintStatus(store::ResultReader& reader, const Check& check) {
   fmt::print("{:<12} {:<28} {:>8} {:>8} {:>8} {:>8}\n", "stage", "arm", "planned", "done", "failed",
              "missing");
-  for (const ArmStatus& arm : reader.Status())
+  for (const store::ArmStatus& arm : reader.Status())
     fmt::print("{:<12} {:<28} {:>8} {:>8} {:>8} {:>8}\n", arm.stage, arm.arm, arm.planned, arm.done,
                arm.failed, arm.missing);
   fmt::print("{}", FailuresText(reader.Layout(), reader.Failures()));
@@ -107,7 +107,7 @@ Command AddStatus(Program& program) {
             if (watch->terminal || !watch->html.empty()) return WatchStatus(*watch);
             if (!stage->empty()) return static_cast<int>(TellStage(options->dir, *stage));
             if (IsTallied(options->dir)) return static_cast<int>(TellTally(options->dir, options->json));
-            ResultReader reader(options->dir);
+            store::ResultReader reader(options->dir);
             const Check check = CheckOf(reader);
             options->json ? PrintStatusJson(reader, check) : PrintStatus(reader, check);
             return static_cast<int>(check.damage.empty() ? kDone : kFailedInside);
@@ -124,16 +124,17 @@ struct ReportOptions {
 
 int MakeReportOf(const ReportOptions& options) {
   const GatheredShards run(options.dir);
-  ResultReader reader(run.dir());
+  store::ResultReader reader(run.dir());
   reader.CheckWhole();  // before anything is written
-  const RunResults results = LoadRun(run.dir());
-  const Report report = MakeReport(results, ReadDepartures(reader),
-                                   options.claims ? Judging::kEverything : Judging::kWhatThePaperFlew);
-  FolderOptions folder{.dir = run.dir(),
-                       .out = options.out,
-                       .figures = !options.no_figures,
-                       .force = options.force,
-                       .command = ""};
+  const report::RunResults results = report::LoadRun(run.dir());
+  const report::Report report =
+      report::MakeReport(results, report::ReadDepartures(reader),
+                         options.claims ? report::Judging::kEverything : report::Judging::kWhatThePaperFlew);
+  report::FolderOptions folder{.dir = run.dir(),
+                               .out = options.out,
+                               .figures = !options.no_figures,
+                               .force = options.force,
+                               .command = ""};
   folder.command = "ed3r report " + options.dir + (options.out.empty() ? "" : " --out " + options.out) +
                    (options.claims ? " --claims" : "");
   if (folder.out.empty()) folder.out = options.dir + "/report";
@@ -142,15 +143,15 @@ int MakeReportOf(const ReportOptions& options) {
   folder.viewers_note = watched.note;
   for (const WatchedMission& mission : watched.list)
     folder.viewers.push_back({{"mission", mission.mission}, {"what", mission.what}, {"file", mission.file}});
-  const FolderResult written = WriteReportFolder(report, results, folder);
+  const report::FolderResult written = report::WriteReportFolder(report, results, folder);
   if (!watched.list.empty()) MakeFolder(std::filesystem::path(folder.out) / "missions");
   for (const WatchedMission& mission : watched.list)
     WriteFile(std::filesystem::path(folder.out) / mission.file, mission.page);
   if (options.json)
-    fmt::print("{}\n", ReportJson(report).dump(2));
+    fmt::print("{}\n", report::ReportJson(report).dump(2));
   else
     fmt::print("{}\n{}: index.html, report.txt, report.json, metrics.csv, {} tables, {} figures\n",
-               ReportText(report), folder.out, report.tables.size(), written.figures);
+               report::ReportText(report), folder.out, report.tables.size(), written.figures);
   std::fflush(stdout);  // before what goes to the other stream
   for (const std::string& note : {written.note, written.page_note, watched.note})
     if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
@@ -189,8 +190,8 @@ Command AddDigest(Program& program) {
       program.AddCommand("digest", "One SHA-256 over all stored results, the same however they were flown");
   const auto options = AddDirOptions(parser);
   return {parser, [options] {
-            ResultReader reader(options->dir);
-            const std::string digest = DigestOf(reader);
+            store::ResultReader reader(options->dir);
+            const std::string digest = store::DigestOf(reader);
             if (options->json)
               fmt::print("{}\n", nlohmann::ordered_json({{"sha256", digest}}).dump(2));
             else
@@ -210,11 +211,11 @@ Command AddMerge(Program& program) {
   parser.Option("OUT", options->out, "Run directory to make or to add to").Required();
   parser.Option("DIR", options->dirs, "Run directories to join").Required();
   return {parser, [options] {
-            const MergeSummary summary = MergeStores(options->out, options->dirs);
+            const store::MergeSummary summary = store::MergeStores(options->out, options->dirs);
             fmt::print("{}: {} missions added, {} were there already, {} failed\n", options->out,
                        summary.added, summary.present, summary.failed);
             return kDone;
           }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -16,7 +16,7 @@
 #include "studies/report/load.h"
 #include "studies/report/report.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 struct Options {
@@ -28,10 +28,10 @@ struct Options {
   bool quiet = false, repair = false, only_failed = false, accept_mixed = false, profile = false;
 };
 
-std::string NetworksText(const std::vector<ShelvedNetwork>& networks) {
+std::string NetworksText(const std::vector<schedule::ShelvedNetwork>& networks) {
   std::string text;
-  for (const ShelvedNetwork& network : networks) {
-    const TrainingReport& report = network.model->data().report;
+  for (const schedule::ShelvedNetwork& network : networks) {
+    const rfnn::TrainingReport& report = network.model->data().report;
     text +=
         fmt::format("network {}: {}, best {}; R2 train {:.3f}, validation {:.3f}, held out {:.3f}; {}\n",
                     network.name, Counted(static_cast<std::int64_t>(report.curve.size()), "epoch"),
@@ -41,10 +41,10 @@ std::string NetworksText(const std::vector<ShelvedNetwork>& networks) {
 }
 
 // One line on what this session did, with the real-time factor per core.
-void PrintSession(const SweepSummary& summary, const std::string& dir) {
-  const RunSummary& flown = summary.flown;
+void PrintSession(const schedule::SweepSummary& summary, const std::string& dir) {
+  const schedule::RunSummary& flown = summary.flown;
   if (!summary.grown.empty()) fmt::print("grown: {}\n", summary.grown);
-  for (const DamagedMission& damage : summary.repaired)
+  for (const store::DamagedMission& damage : summary.repaired)
     fmt::print("repaired: {}: {}\n", damage.name, damage.what);
   fmt::print("{}: {} stored", dir, Counted(summary.stored_before + flown.stored, "mission"));
   if (summary.stored_before > 0) fmt::print(" ({} before)", summary.stored_before);
@@ -67,57 +67,59 @@ int ToldEnd() {
 }
 
 // A part of a training stage leaves networks in the cache and needs no store of its own.
-bool IsPartOfTraining(const SweepPlan& plan, const Options& options, const Shard& shard) {
-  return shard.count > 1 && std::any_of(plan.stages.begin(), plan.stages.end(), [&](const Stage& stage) {
-           return stage.name == options.stage && stage.kind == StageKind::kTrain;
+bool IsPartOfTraining(const sweep::SweepPlan& plan, const Options& options, const schedule::Shard& shard) {
+  return shard.count > 1 &&
+         std::any_of(plan.stages.begin(), plan.stages.end(), [&](const sweep::Stage& stage) {
+           return stage.name == options.stage && stage.kind == sweep::StageKind::kTrain;
          });
 }
 
 // UserError unless all is stored that the training stage learns from.
-void CheckFoundation(const SweepPlan& plan, const Options& options) {
-  ResultReader reader(options.from);
+void CheckFoundation(const sweep::SweepPlan& plan, const Options& options) {
+  store::ResultReader reader(options.from);
   if (reader.StoredRecipe().plan_text != plan.CanonicalText())
     throw UserError(fmt::format("{}: holds results of another plan; give another --from", options.from));
-  const std::vector<RunId> stored = reader.Stored();
-  for (const Stage& stage : plan.stages)
-    if (stage.name == options.stage) CheckReady(plan, stage, stored, options.from, HalfWidth);
+  const std::vector<sweep::RunId> stored = reader.Stored();
+  for (const sweep::Stage& stage : plan.stages)
+    if (stage.name == options.stage)
+      schedule::CheckReady(plan, stage, stored, options.from, report::HalfWidth);
 }
 
-int TrainAPart(const SweepPlan& plan, const Options& options, const Shard& shard) {
+int TrainAPart(const sweep::SweepPlan& plan, const Options& options, const schedule::Shard& shard) {
   if (options.from.empty())
     throw UserError(
         "--from: is missing; a part of a training stage learns from the run that holds the warm-up");
-  CheckTraining(plan);
+  schedule::CheckTraining(plan);
   CheckFoundation(plan, options);
   InstallInterruptHandler();
-  const std::vector<ShelvedNetwork> networks =
-      TrainPart(plan,
-                {options.stage, options.from, options.cache, ThreadsFor(options.threads), &InterruptFlag(),
-                 stderr, options.quiet},
-                shard);
+  const std::vector<schedule::ShelvedNetwork> networks =
+      schedule::TrainPart(plan,
+                          {options.stage, options.from, options.cache, schedule::ThreadsFor(options.threads),
+                           &InterruptFlag(), stderr, options.quiet},
+                          shard);
   if (InterruptFlag()) return ToldEnd();
   if (!options.quiet) fmt::print("{}", NetworksText(networks));
   return kDone;
 }
 
 std::string TableOf(const std::string& dir) {
-  ResultReader reader(dir);
-  return ReportText(MakeReport(LoadRun(dir), ReadDepartures(reader)));
+  store::ResultReader reader(dir);
+  return report::ReportText(report::MakeReport(report::LoadRun(dir), report::ReadDepartures(reader)));
 }
 
 int Run(const Options& options) {
-  const SweepPlan plan = options.sweep.Load();
-  const Shard shard = ParseShard(options.shard);
-  ThreadsFor(options.threads);  // refused before worlds are built
+  const sweep::SweepPlan plan = options.sweep.Load();
+  const schedule::Shard shard = schedule::ParseShard(options.shard);
+  schedule::ThreadsFor(options.threads);  // refused before worlds are built
   if (IsPartOfTraining(plan, options, shard)) return TrainAPart(plan, options, shard);
   const std::string dir = options.out.empty() ? DefaultRunDir(plan) : options.out;
   const bool all_of_it = shard.count == 1 && options.stage.empty() && !options.repair &&
                          !options.only_failed && !options.accept_mixed;
   if (all_of_it && TellFinishedRun(plan, dir, options.quiet)) return kDone;
-  const Inputs inputs(plan);
+  const schedule::Inputs inputs(plan);
   InstallInterruptHandler();
 
-  SweepOptions sweep;
+  schedule::SweepOptions sweep;
   sweep.dir = dir;
   sweep.stage = options.stage;
   sweep.foundation = options.from;
@@ -130,11 +132,11 @@ int Run(const Options& options) {
   sweep.only_failed = options.only_failed;
   sweep.accept_mixed = options.accept_mixed;
   sweep.profile = options.profile;
-  sweep.half_width = HalfWidth;
+  sweep.half_width = report::HalfWidth;
   sweep.notes = DescribeMachine();
   sweep.notes.merge(NotesOf(options.sweep));
   sweep.notes.emplace("sweep question", plan.question);
-  const SweepSummary summary = RunSweep(plan, inputs, sweep);
+  const schedule::SweepSummary summary = schedule::RunSweep(plan, inputs, sweep);
 
   std::string table;
   if (!options.quiet) {
@@ -185,4 +187,4 @@ Command AddRun(Program& program) {
   return {parser, [options] { return Run(*options); }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

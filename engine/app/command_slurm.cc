@@ -22,7 +22,7 @@
 #include "engine/schedule/training_stage.h"
 #include "studies/report/load.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,7 +41,7 @@ struct Options {
 std::string Absolute(const std::string& path) { return fs::absolute(path).lexically_normal().string(); }
 
 void CheckDirective(const char* option, const std::string& value) {
-  if (!value.empty() && !IsDirectiveWord(value))
+  if (!value.empty() && !schedule::IsDirectiveWord(value))
     throw UserError(
         fmt::format("{}: '{}' is not allowed; allowed: letters, digits and ._:,=@%+/[]-", option, value));
 }
@@ -54,8 +54,8 @@ std::vector<std::string> SweepWords(const SweepArguments& sweep) {
   return words;
 }
 
-SlurmOptions ScriptOptions(const Options& options, const std::string& run_dir) {
-  SlurmOptions slurm;
+schedule::SlurmOptions ScriptOptions(const Options& options, const std::string& run_dir) {
+  schedule::SlurmOptions slurm;
   slurm.program = fs::read_symlink("/proc/self/exe").string();
   slurm.sweep = SweepWords(options.sweep);
   slurm.working_dir = fs::current_path().string();
@@ -71,15 +71,16 @@ SlurmOptions ScriptOptions(const Options& options, const std::string& run_dir) {
   return slurm;
 }
 
-std::vector<BatchStep> Steps(const SweepPlan& plan, std::int64_t shards) {
+std::vector<schedule::BatchStep> Steps(const sweep::SweepPlan& plan, std::int64_t shards) {
   std::vector<double> expected_core_s;
-  for (const Stage& stage : plan.stages) expected_core_s.push_back(ExpectedCoreS(stage));
-  return StepsOf(plan, shards, NeedsNetworks(plan) ? CountNetworks(plan) : 0, expected_core_s);
+  for (const sweep::Stage& stage : plan.stages) expected_core_s.push_back(ExpectedCoreS(stage));
+  return schedule::StepsOf(plan, shards, schedule::NeedsNetworks(plan) ? schedule::CountNetworks(plan) : 0,
+                           expected_core_s);
 }
 
 // Scripts are there to be edited: what somebody has changed is not written over.
-void Write(const std::vector<BatchFile>& files, const fs::path& folder, bool force) {
-  for (const BatchFile& file : files) {
+void Write(const std::vector<schedule::BatchFile>& files, const fs::path& folder, bool force) {
+  for (const schedule::BatchFile& file : files) {
     const fs::path path = folder / file.name;
     if (force || !fs::exists(path) || ReadFile(path.string()) == file.content) continue;
     throw UserError(fmt::format(
@@ -88,7 +89,7 @@ void Write(const std::vector<BatchFile>& files, const fs::path& folder, bool for
         path.string(), (folder / "submit.sh").string()));
   }
   MakeFolder(folder / "logs");
-  for (const BatchFile& file : files) {
+  for (const schedule::BatchFile& file : files) {
     WriteFile(folder / file.name, file.content);
     if (file.executable)
       fs::permissions(folder / file.name,
@@ -104,14 +105,15 @@ std::int64_t ShardsOfScripts(const fs::path& folder) {
     throw UserError(
         fmt::format("{}: no batch scripts in it; 'ed3r slurm SWEEP' writes them", folder.string()));
   const std::string text = ReadFile(common);
-  const std::size_t at = text.find(kShardsLine);
+  const std::size_t at = text.find(schedule::kShardsLine);
   std::int64_t shards = 0;
   if (at != std::string::npos) {
-    const char* const begin = text.data() + at + std::strlen(kShardsLine);
+    const char* const begin = text.data() + at + std::strlen(schedule::kShardsLine);
     std::from_chars(begin, text.data() + text.size(), shards);
   }
   if (shards < 1 || shards > kMaxShards)
-    throw UserError(fmt::format("{}: no line '{}N' with N in 1 .. {}", common, kShardsLine + 1, kMaxShards));
+    throw UserError(
+        fmt::format("{}: no line '{}N' with N in 1 .. {}", common, schedule::kShardsLine + 1, kMaxShards));
   return shards;
 }
 
@@ -135,22 +137,24 @@ int Submit(const fs::path& folder, const std::vector<std::string>& arguments) {
   return kFailedInside;
 }
 
-int TellMissing(const SweepPlan& plan, const Options& options, const fs::path& folder,
+int TellMissing(const sweep::SweepPlan& plan, const Options& options, const fs::path& folder,
                 const std::string& run_dir) {
-  const std::vector<BatchStep> steps = Steps(plan, ShardsOfScripts(folder));
-  const Owed owed = WhatIsOwed(plan, steps, run_dir, options.cache, HalfWidth);
+  const std::vector<schedule::BatchStep> steps = Steps(plan, ShardsOfScripts(folder));
+  const schedule::Owed owed = schedule::WhatIsOwed(plan, steps, run_dir, options.cache, report::HalfWidth);
   if (owed.step == 0) {
     fmt::print("{}: nothing is owed\n", run_dir);
     return kDone;
   }
-  const BatchStep& step = steps[static_cast<std::size_t>(owed.step) - 1];
+  const schedule::BatchStep& step = steps[static_cast<std::size_t>(owed.step) - 1];
   fmt::print("{}: step {} on", run_dir, step.name);
   if (!owed.tasks.empty())
-    fmt::print(", {} of its {} tasks: {}", owed.tasks.size(), step.tasks, TaskList(owed.tasks));
+    fmt::print(", {} of its {} tasks: {}", owed.tasks.size(), step.tasks, schedule::TaskList(owed.tasks));
   if (owed.missions > 0) fmt::print(" ({} owed)", Counted(owed.missions, "mission"));
   std::vector<std::string> arguments = {fmt::format("{}", owed.step)};
-  for (const std::string& array : ArraysOf(owed.tasks, options.array_limit)) arguments.push_back(array);
-  fmt::print("\n{} {}\n", ShellWord((folder / "submit.sh").string()), ShellWords(arguments));
+  for (const std::string& array : schedule::ArraysOf(owed.tasks, options.array_limit))
+    arguments.push_back(array);
+  fmt::print("\n{} {}\n", schedule::ShellWord((folder / "submit.sh").string()),
+             schedule::ShellWords(arguments));
   return options.submit ? Submit(folder, arguments) : kDone;
 }
 
@@ -161,17 +165,17 @@ int Run(const Options& options) {
   if (options.scratch.find_first_of("\"`\\\n") != std::string::npos)
     throw UserError(fmt::format(
         "--scratch: '{}' is not allowed; allowed: a path, or a variable such as $TMPDIR", options.scratch));
-  const SweepPlan plan = options.sweep.Load();
-  CheckTraining(plan);
+  const sweep::SweepPlan plan = options.sweep.Load();
+  schedule::CheckTraining(plan);
   const std::string run_dir = options.out.empty() ? DefaultRunDir(plan) : options.out;
   const fs::path folder = fs::path(run_dir) / "slurm";
   if (options.missing) return TellMissing(plan, options, folder, run_dir);
-  const std::vector<BatchStep> steps = Steps(plan, options.shards);
-  Write(SlurmScripts(plan.name, steps, ScriptOptions(options, run_dir)), folder, options.force);
+  const std::vector<schedule::BatchStep> steps = Steps(plan, options.shards);
+  Write(schedule::SlurmScripts(plan.name, steps, ScriptOptions(options, run_dir)), folder, options.force);
   fmt::print("{}: {}, from {} to {}\n", folder.string(),
              Counted(static_cast<std::int64_t>(steps.size()), "step"), steps.front().name, steps.back().name);
   if (options.submit) return Submit(folder, {});
-  fmt::print("submit them with {}\n", ShellWord((folder / "submit.sh").string()));
+  fmt::print("submit them with {}\n", schedule::ShellWord((folder / "submit.sh").string()));
   return kDone;
 }
 
@@ -207,4 +211,4 @@ Command AddSlurm(Program& program) {
   return {parser, [options] { return Run(*options); }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

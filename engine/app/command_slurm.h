@@ -3,8 +3,8 @@
 
 #include "engine/app/commands.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 Command AddSlurm(Program& program);
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -13,26 +13,26 @@
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 struct Verification {
   std::int64_t missions = 0;
-  std::vector<DamagedMission> damage;
+  std::vector<store::DamagedMission> damage;
   std::vector<std::string> other;  // lines on what is not a mission
 };
 
 Verification Verify(const std::string& dir) {
   Verification found;
   try {
-    ResultReader reader(dir);
+    store::ResultReader reader(dir);
     found.missions = reader.CountMissions();
     found.damage = reader.FindDamage();
     reader.Files();
-    NetworkShelf::From(reader.Networks(), dir);
+    schedule::NetworkShelf::From(reader.Networks(), dir);
   } catch (const UserError& error) {
     // What is not there is bad input; what is there and cannot be read is what was asked.
-    if (!std::filesystem::exists(std::filesystem::path(dir) / kResultsFile)) throw;
+    if (!std::filesystem::exists(std::filesystem::path(dir) / store::kResultsFile)) throw;
     found.other.emplace_back(error.what());
   } catch (const InternalError& error) {  // SQLite's own tables are not what they should be
     found.other.emplace_back(error.what());
@@ -47,12 +47,12 @@ int PrintVerification(const std::string& dir, const Verification& found, bool js
                                      {"missions", found.missions},
                                      {"damaged", nlohmann::ordered_json::array()},
                                      {"other", found.other}};
-    for (const DamagedMission& damage : found.damage)
+    for (const store::DamagedMission& damage : found.damage)
       object["damaged"].push_back({{"mission", damage.name}, {"problem", damage.what}});
     fmt::print("{}\n", object.dump(2));
     return whole ? kDone : kFailedInside;
   }
-  for (const DamagedMission& damage : found.damage) fmt::print("{}: {}\n", damage.name, damage.what);
+  for (const store::DamagedMission& damage : found.damage) fmt::print("{}: {}\n", damage.name, damage.what);
   for (const std::string& line : found.other) fmt::print("{}\n", line);
   if (whole)
     fmt::print("{}: {} whole\n", dir, Counted(found.missions, "mission"));
@@ -62,7 +62,7 @@ int PrintVerification(const std::string& dir, const Verification& found, bool js
   return whole ? kDone : kFailedInside;
 }
 
-int PrintDifference(const RunDifference& difference, bool json) {
+int PrintDifference(const store::RunDifference& difference, bool json) {
   const auto& first = difference.first;
   if (json) {
     nlohmann::ordered_json object = {{"identical", !first.has_value()},
@@ -126,8 +126,8 @@ Command AddDiff(Program& program) {
   parser.Option("B", options->b, "Run directory").Required();
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
-            ResultReader a(options->a), b(options->b);
-            const RunDifference difference = DiffRuns(a, b);
+            store::ResultReader a(options->a), b(options->b);
+            const store::RunDifference difference = store::DiffRuns(a, b);
             if (difference.compared + difference.only_here + difference.only_there == 0)
               throw UserError(
                   fmt::format("{} and {}: no mission of an arm that both have", options->a, options->b));
@@ -135,4 +135,4 @@ Command AddDiff(Program& program) {
           }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -9,7 +9,7 @@
 #include "engine/world/measures.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -22,13 +22,13 @@ struct Options {
 
 const char* Use(bool known) { return known ? "known" : "unseen"; }
 
-void PrintSites(const Scene& scene, const WorldMeasures& measures) {
+void PrintSites(const world::Scene& scene, const world::WorldMeasures& measures) {
   std::size_t width = 4;
-  for (const SiteMeasure& site : measures.sites) width = std::max(width, site.name.size());
+  for (const world::SiteMeasure& site : measures.sites) width = std::max(width, site.name.size());
   fmt::print("{:<{}}  {:<6}  {:>6}  {:>6}  {:>6}  {:>8}  {:>7}  {:>11}  {:>12}\n", "site", width, "use",
              "x m", "y m", "z m", "distance", "bearing", "sight_start", "sight_around");
   for (std::size_t i = 0; i < measures.sites.size(); ++i) {
-    const SiteMeasure& site = measures.sites[i];
+    const world::SiteMeasure& site = measures.sites[i];
     const Eigen::Vector3d& at_m = scene.Sites()[i].base_m;
     fmt::print("{:<{}}  {:<6}  {:6.1f}  {:6.1f}  {:6.1f}  {:6.1f} m  {:5.0f} °  {:11.2f}  {:12.2f}\n",
                site.name, width, Use(site.known), at_m.x(), at_m.y(), at_m.z(), site.distance_m,
@@ -36,7 +36,7 @@ void PrintSites(const Scene& scene, const WorldMeasures& measures) {
   }
 }
 
-void PrintSpread(const char* which, const SiteSpread& spread) {
+void PrintSpread(const char* which, const world::SiteSpread& spread) {
   if (spread.sites == 0) return;
   fmt::print(
       "{:<6} sites: {:>3}, sight_around mean {:.2f}, coefficient of variation {:.2f}; "
@@ -45,14 +45,14 @@ void PrintSpread(const char* which, const SiteSpread& spread) {
       spread.distance_max_m, spread.distance_mean_m);
 }
 
-void Describe(const Scene& scene, const WorldMeasures& measures) {
+void Describe(const world::Scene& scene, const world::WorldMeasures& measures) {
   const Eigen::Vector3d& size_m = scene.SizeM();
   const auto [lowest, highest] =
       std::minmax_element(scene.Ground().height_m.begin(), scene.Ground().height_m.end());
   fmt::print("{}: {:g} x {:g} x {:g} m, ground {:.1f} .. {:.1f} m, {} trees, fingerprint {}\n", scene.Name(),
              size_m.x(), size_m.y(), size_m.z(), *lowest, *highest, scene.Trees().size(),
              scene.Fingerprint().substr(0, 16));
-  const StartArea& start = scene.Start();
+  const world::StartArea& start = scene.Start();
   for (const std::string& note : scene.Notes()) fmt::print("{}\n", note);
   fmt::print("start: disc of {:g} m around ({:g}, {:g}), {:g} .. {:g} m above ground\n\n", start.radius_m,
              start.x_m, start.y_m, start.height_min_m, start.height_max_m);
@@ -62,7 +62,7 @@ void Describe(const Scene& scene, const WorldMeasures& measures) {
   PrintSpread("unseen", measures.unseen);
   PrintSpread("all", measures.all);
   for (std::size_t i = 0; i < measures.base_stations.size(); ++i) {
-    const StationMeasure& station = measures.base_stations[i];
+    const world::StationMeasure& station = measures.base_stations[i];
     const Eigen::Vector3d& at_m = scene.BaseStations()[i].antenna_m;
     fmt::print(
         "base station {} ({}): ({:.1f}, {:.1f}, {:.1f}) m, {:.1f} m from the start, bearing {:.0f} °\n",
@@ -71,7 +71,7 @@ void Describe(const Scene& scene, const WorldMeasures& measures) {
   }
 }
 
-Json JsonOf(const SiteSpread& spread) {
+Json JsonOf(const world::SiteSpread& spread) {
   return {{"sites", spread.sites},
           {"sight_around_mean", spread.sight_mean},
           {"sight_around_variation", spread.sight_variation},
@@ -82,7 +82,7 @@ Json JsonOf(const SiteSpread& spread) {
 
 Json JsonOf(const Eigen::Vector3d& at_m) { return {at_m.x(), at_m.y(), at_m.z()}; }
 
-Json JsonOf(const Scene& scene, const WorldMeasures& measures) {
+Json JsonOf(const world::Scene& scene, const world::WorldMeasures& measures) {
   Json json = {{"name", scene.Name()},
                {"fingerprint", scene.Fingerprint()},
                {"size_m", JsonOf(scene.SizeM())},
@@ -95,7 +95,7 @@ Json JsonOf(const Scene& scene, const WorldMeasures& measures) {
                {"unseen", JsonOf(measures.unseen)},
                {"all", JsonOf(measures.all)}};
   for (std::size_t i = 0; i < measures.sites.size(); ++i) {
-    const SiteMeasure& site = measures.sites[i];
+    const world::SiteMeasure& site = measures.sites[i];
     json["sites"].push_back({{"name", site.name},
                              {"known", site.known},
                              {"at_m", JsonOf(scene.Sites()[i].base_m)},
@@ -105,7 +105,7 @@ Json JsonOf(const Scene& scene, const WorldMeasures& measures) {
                              {"sight_around", site.sight_around}});
   }
   for (std::size_t i = 0; i < measures.base_stations.size(); ++i) {
-    const StationMeasure& station = measures.base_stations[i];
+    const world::StationMeasure& station = measures.base_stations[i];
     json["base_stations"].push_back({{"name", station.name},
                                      {"known", station.known},
                                      {"at_m", JsonOf(scene.BaseStations()[i].antenna_m)},
@@ -126,18 +126,18 @@ Command AddWorld(Program& program) {
       .Path();
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
-            const std::shared_ptr<const Scene> scene = Scene::Load(options->file);
-            const WorldMeasures measures = MeasureWorld(*scene);
+            const std::shared_ptr<const world::Scene> scene = world::Scene::Load(options->file);
+            const world::WorldMeasures measures = world::MeasureWorld(*scene);
             if (options->json)
               fmt::print("{}\n", JsonOf(*scene, measures).dump(2));
             else
               Describe(*scene, measures);
             if (!options->picture.empty()) {
-              WriteMapPicture(*scene, options->picture);
+              world::WriteMapPicture(*scene, options->picture);
               if (!options->json) fmt::print("map: {}\n", options->picture);
             }
             return kDone;
           }};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -7,7 +7,7 @@
 
 #include "engine/app/command_line.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 using CommandRun = std::function<int()>;
 
@@ -43,4 +43,4 @@ constexpr int kMissionsFailed = 3;
 constexpr int kRequeue = 75;  // EX_TEMPFAIL: the same command continues
 constexpr int kInterrupted = 130;
 
-}  // namespace ed3r
+}  // namespace ed3r::app

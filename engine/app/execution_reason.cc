@@ -11,7 +11,7 @@
 #include "engine/core/check.h"
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 // A step through the rules of RBS (R25), as DecideByRules takes it.
@@ -19,15 +19,15 @@ struct RulePath {
   double rate_margin, cpu_margin;    // ratios minus their thresholds
   std::optional<double> where_draw;  // of the coins that were asked
   std::optional<double> model_draw;
-  Execution execution;
+  agents::Execution execution;
 
   bool RateExceeds() const { return rate_margin > 0.0; }
   bool CpuExceeds() const { return cpu_margin > 0.0; }
 };
 
-RulePath FollowRules(const MissionTask& task, const DecisionProbe& probe) {
+RulePath FollowRules(const mission::MissionTask& task, const mission::DecisionProbe& probe) {
   const RbsConfig& rbs = task.config.rbs;
-  const RobotView& view = probe.robot_view;
+  const agents::RobotView& view = probe.robot_view;
   Stream stream(task.seed, task.scenario, Purpose::kExecution, probe.timestep);
   const double where_draw = stream.Uniform(), model_draw = stream.Uniform();
   RulePath path{.rate_margin = view.rate_ratio - rbs.transmission_threshold,
@@ -36,17 +36,19 @@ RulePath FollowRules(const MissionTask& task, const DecisionProbe& probe) {
                 .model_draw = {},
                 .execution = probe.execution.execution};
   if (path.RateExceeds() && path.CpuExceeds()) path.where_draw = where_draw;
-  if (path.execution != Execution::kOffload && rbs.model == RbsModel::kCoin) path.model_draw = model_draw;
+  if (path.execution != agents::Execution::kOffload && rbs.model == RbsModel::kCoin)
+    path.model_draw = model_draw;
   // What is told must be what was done.
   Stream again(task.seed, task.scenario, Purpose::kExecution, probe.timestep);
-  ED3R_CHECK(DecideByRules(rbs, view, again).execution == path.execution, "the rules decide otherwise");
+  ED3R_CHECK(agents::DecideByRules(rbs, view, again).execution == path.execution,
+             "the rules decide otherwise");
   return path;
 }
 
 const char* Above(bool exceeds) { return exceeds ? "above" : "not above"; }
 
 std::string WhereText(const RulePath& path) {
-  const char* where = path.execution == Execution::kOffload ? "offload" : "local";
+  const char* where = path.execution == agents::Execution::kOffload ? "offload" : "local";
   if (path.where_draw)
     return fmt::format("{} by a coin, as both are above (draw {:.3f}; offload below 0.5)", where,
                        *path.where_draw);
@@ -57,7 +59,7 @@ std::string WhereText(const RulePath& path) {
                      path.rate_margin > path.cpu_margin ? "rate" : "CPU");
 }
 
-std::string RulesText(const MissionTask& task, const DecisionProbe& probe) {
+std::string RulesText(const mission::MissionTask& task, const mission::DecisionProbe& probe) {
   const RbsConfig& rbs = task.config.rbs;
   const RulePath path = FollowRules(task, probe);
   std::string text =
@@ -66,14 +68,14 @@ std::string RulesText(const MissionTask& task, const DecisionProbe& probe) {
       fmt::format("  f / f_max             {:.3f}: {} rbs.processing_threshold {}\n",
                   probe.robot_view.cpu_ratio, Above(path.CpuExceeds()), rbs.processing_threshold) +
       fmt::format("  where (R25): {}\n", WhereText(path));
-  if (path.execution == Execution::kOffload) return text + "  > offload\n";
+  if (path.execution == agents::Execution::kOffload) return text + "  > offload\n";
   const std::string model = path.model_draw
                                 ? fmt::format("by a coin (draw {:.3f}; full below 0.5)", *path.model_draw)
                                 : "as rbs.model says";
   return text + fmt::format("  model: {}\n  > {}\n", model, NameOf(path.execution));
 }
 
-nlohmann::ordered_json RulesJson(const MissionTask& task, const DecisionProbe& probe) {
+nlohmann::ordered_json RulesJson(const mission::MissionTask& task, const mission::DecisionProbe& probe) {
   const RulePath path = FollowRules(task, probe);
   nlohmann::ordered_json json = {{"rate_ratio", probe.robot_view.rate_ratio},
                                  {"transmission_threshold", task.config.rbs.transmission_threshold},
@@ -86,25 +88,25 @@ nlohmann::ordered_json RulesJson(const MissionTask& task, const DecisionProbe& p
   return json;
 }
 
-const char* NameOf(DecidedBy by) {
+const char* WhoDecided(agents::DecidedBy by) {
   constexpr const char* kNames[] = {"rules", "network", "draw", "strategy", "direct"};
   return kNames[static_cast<std::size_t>(by)];
 }
 
-std::string AllowedNames(const Strategy& strategy) {
+std::string AllowedNames(const agents::Strategy& strategy) {
   std::vector<std::string_view> names;
-  for (const auto& [value, name] : EnumNames<Execution>::kNames)
+  for (const auto& [value, name] : EnumNames<agents::Execution>::kNames)
     if (strategy.execution.allowed.Allows(value)) names.push_back(name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string ChoiceText(DecidedBy by, const Strategy& strategy) {
+std::string ChoiceText(agents::DecidedBy by, const agents::Strategy& strategy) {
   switch (by) {
-    case DecidedBy::kDraw:
+    case agents::DecidedBy::kDraw:
       return "drawn at random from " + AllowedNames(strategy);
-    case DecidedBy::kStrategy:
+    case agents::DecidedBy::kStrategy:
       return "the only execution of this strategy";
-    case DecidedBy::kDirect:
+    case agents::DecidedBy::kDirect:
       return "what the network likes best of " + AllowedNames(strategy);
     default:
       return fmt::format("the best prediction among {}", AllowedNames(strategy));
@@ -113,27 +115,28 @@ std::string ChoiceText(DecidedBy by, const Strategy& strategy) {
 
 }  // namespace
 
-std::string ExecutionText(const MissionTask& task, const DecisionProbe& probe) {
-  const Strategy& strategy = FindStrategy(task.config.mission.strategy);
-  const DecidedBy by = probe.execution.by;
-  if (by == DecidedBy::kRules) return RulesText(task, probe);
+std::string ExecutionText(const mission::MissionTask& task, const mission::DecisionProbe& probe) {
+  const agents::Strategy& strategy = agents::FindStrategy(task.config.mission.strategy);
+  const agents::DecidedBy by = probe.execution.by;
+  if (by == agents::DecidedBy::kRules) return RulesText(task, probe);
   std::string text;
-  for (const auto& [value, name] : EnumNames<Execution>::kNames) {
+  for (const auto& [value, name] : EnumNames<agents::Execution>::kNames) {
     const double reward = probe.robot_rewards[static_cast<std::size_t>(value)];
     if (!std::isnan(reward)) text += fmt::format("  {:<10} predicted reward {:.4f}\n", name, reward);
   }
   return text + fmt::format("  > {}: {}\n", NameOf(probe.execution.execution), ChoiceText(by, strategy));
 }
 
-void AddExecution(const MissionTask& task, const DecisionProbe& probe, nlohmann::ordered_json& object) {
-  const DecidedBy by = probe.execution.by;
+void AddExecution(const mission::MissionTask& task, const mission::DecisionProbe& probe,
+                  nlohmann::ordered_json& object) {
+  const agents::DecidedBy by = probe.execution.by;
   object["execution"] = NameOf(probe.execution.execution);
-  object["execution_by"] = NameOf(by);
-  if (by == DecidedBy::kRules) object["rules"] = RulesJson(task, probe);
-  for (const auto& [value, name] : EnumNames<Execution>::kNames) {
+  object["execution_by"] = WhoDecided(by);
+  if (by == agents::DecidedBy::kRules) object["rules"] = RulesJson(task, probe);
+  for (const auto& [value, name] : EnumNames<agents::Execution>::kNames) {
     const double reward = probe.robot_rewards[static_cast<std::size_t>(value)];
     if (!std::isnan(reward)) object["robot_predicted_rewards"][std::string(name)] = reward;
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

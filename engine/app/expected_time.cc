@@ -3,7 +3,7 @@
 #include "engine/agents/strategy.h"
 #include "engine/robot/energy.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 // Simulated over wall seconds per core of this engine on its reference machine (2 shared cores of an EPYC server with
@@ -14,25 +14,26 @@ constexpr double kRealTimePerCoreOnPixels = 1100.0;
 constexpr double kEarlyCompletionS = 280.0;
 
 // A mission without early completion lasts until the battery is empty.
-double ExpectedSimulatedS(const Arm& arm) {
+double ExpectedSimulatedS(const sweep::Arm& arm) {
   const Config& config = arm.config;
-  if (FindStrategy(config.mission.strategy).early_completion && config.agents.early_completion)
+  if (agents::FindStrategy(config.mission.strategy).early_completion && config.agents.early_completion)
     return kEarlyCompletionS;
-  return config.robot.BatteryJ() / MovementPowerOf(config.robot, config.environment, config.energy).hover_w;
+  return config.robot.BatteryJ() /
+         robot::MovementPowerOf(config.robot, config.environment, config.energy).hover_w;
 }
 
 }  // namespace
 
-double ExpectedCoreS(const Arm& arm) {
+double ExpectedCoreS(const sweep::Arm& arm) {
   const bool pixels = arm.config.perception.tier == PerceptionTier::kPixels;
   return ExpectedSimulatedS(arm) / (pixels ? kRealTimePerCoreOnPixels : kRealTimePerCore);
 }
 
-double ExpectedCoreS(const Stage& stage) {
+double ExpectedCoreS(const sweep::Stage& stage) {
   double core_s = 0.0;
-  if (stage.kind == StageKind::kFly)
-    for (const Arm& arm : stage.arms) core_s += stage.missions * ExpectedCoreS(arm);
+  if (stage.kind == sweep::StageKind::kFly)
+    for (const sweep::Arm& arm : stage.arms) core_s += stage.missions * ExpectedCoreS(arm);
   return core_s;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

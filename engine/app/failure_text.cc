@@ -9,16 +9,16 @@
 #include "engine/app/words.h"
 #include "engine/core/message.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 constexpr std::size_t kShownOfAKind = 5;
 
-using Kind = std::pair<std::string, std::vector<const FailedMission*>>;
+using Kind = std::pair<std::string, std::vector<const store::FailedMission*>>;
 
-std::vector<Kind> ByKind(const std::vector<FailedMission>& failures) {
-  std::map<std::string, std::vector<const FailedMission*>> found;
-  for (const FailedMission& failure : failures)
+std::vector<Kind> ByKind(const std::vector<store::FailedMission>& failures) {
+  std::map<std::string, std::vector<const store::FailedMission*>> found;
+  for (const store::FailedMission& failure : failures)
     found[failure.kind.empty() ? "unclassified" : failure.kind].push_back(&failure);
   std::vector<Kind> kinds(found.begin(), found.end());
   std::stable_sort(kinds.begin(), kinds.end(),
@@ -28,7 +28,7 @@ std::vector<Kind> ByKind(const std::vector<FailedMission>& failures) {
 
 }  // namespace
 
-std::string FailuresText(const RunLayout& layout, const std::vector<FailedMission>& failures) {
+std::string FailuresText(const store::RunLayout& layout, const std::vector<store::FailedMission>& failures) {
   std::string text;
   for (const auto& [kind, missions] : ByKind(failures)) {
     text +=
@@ -42,9 +42,10 @@ std::string FailuresText(const RunLayout& layout, const std::vector<FailedMissio
   return text;
 }
 
-nlohmann::ordered_json FailuresJson(const RunLayout& layout, const std::vector<FailedMission>& failures) {
+nlohmann::ordered_json FailuresJson(const store::RunLayout& layout,
+                                    const std::vector<store::FailedMission>& failures) {
   auto list = nlohmann::ordered_json::array();
-  for (const FailedMission& failure : failures)
+  for (const store::FailedMission& failure : failures)
     list.push_back({{"mission", layout.Describe(failure.id)},
                     {"scenario", failure.scenario},
                     {"seed", failure.seed},
@@ -53,10 +54,10 @@ nlohmann::ordered_json FailuresJson(const RunLayout& layout, const std::vector<F
   return list;
 }
 
-nlohmann::ordered_json FailureKindsJson(const std::vector<FailedMission>& failures) {
+nlohmann::ordered_json FailureKindsJson(const std::vector<store::FailedMission>& failures) {
   auto kinds = nlohmann::ordered_json::object();
   for (const auto& [kind, missions] : ByKind(failures)) kinds[kind] = missions.size();
   return kinds;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

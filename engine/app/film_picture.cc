@@ -11,7 +11,7 @@
 #include "engine/core/check.h"
 #include "engine/world/map_relief.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 const cv::Scalar kPaper(28, 24, 20), kInk(245, 243, 240), kFaint(175, 168, 160), kGood(130, 210, 110),
@@ -26,7 +26,7 @@ void Text(cv::Mat& canvas, const std::string& text, cv::Point at, double size,
   cv::putText(canvas, text, at, kFont, size, colour, 1, cv::LINE_AA);
 }
 
-std::string PartText(const TimestepRecord& step, double since_s) {
+std::string PartText(const mission::TimestepRecord& step, double since_s) {
   for (const auto& [name, seconds] :
        {std::pair{"flying", MovingS(step)}, std::pair{"sensing", step.sensing_s},
         std::pair{"computing", step.computing_s}}) {
@@ -36,38 +36,38 @@ std::string PartText(const TimestepRecord& step, double since_s) {
   return "transmitting";
 }
 
-std::string CommandText(const TimestepRecord& step) {
+std::string CommandText(const mission::TimestepRecord& step) {
   const auto along = [](double m, const char* there, const char* back) {
     return fmt::format("{:.1f} m {}", std::abs(m), m < 0 ? back : there);
   };
   const double degrees = 180.0 / std::numbers::pi;
   return fmt::format("{}: {}, {}, {}; turn {:.0f} deg {}, camera {:.0f} deg down{}",
-                     NameOf(static_cast<MotionRule>(step.motion_rule)),
+                     NameOf(static_cast<agents::MotionRule>(step.motion_rule)),
                      along(step.command_dx_m, "east", "west"), along(step.command_dy_m, "north", "south"),
                      along(step.command_dz_m, "up", "down"), std::abs(step.command_turn_rad) * degrees,
                      step.command_turn_rad < 0 ? "right" : "left", step.command_tilt_rad * degrees,
                      step.halted != 0 ? "; halted by an obstacle" : "");
 }
 
-std::string LookText(Execution execution) {
+std::string LookText(agents::Execution execution) {
   switch (execution) {
-    case Execution::kOffload:
+    case agents::Execution::kOffload:
       return "Full model, offloaded";
-    case Execution::kFull:
+    case agents::Execution::kFull:
       return "Full model, on board";
-    case Execution::kQuantized:
+    case agents::Execution::kQuantized:
       return "Quantized model, on board";
   }
   return "";
 }
 
 std::string OutcomeText(std::int64_t outcome) {
-  switch (static_cast<Outcome>(outcome)) {
-    case Outcome::kSuccess:
+  switch (static_cast<mission::Outcome>(outcome)) {
+    case mission::Outcome::kSuccess:
       return "SUCCESS";
-    case Outcome::kFalsePositive:
+    case mission::Outcome::kFalsePositive:
       return "FALSE ALARM";
-    case Outcome::kBatteryDepleted:
+    case mission::Outcome::kBatteryDepleted:
       return "BATTERY EMPTY";
   }
   return "";
@@ -75,7 +75,8 @@ std::string OutcomeText(std::int64_t outcome) {
 
 }  // namespace
 
-FilmPicture::FilmPicture(const MissionTask& task, const MissionRecord& flown, std::string title)
+FilmPicture::FilmPicture(const mission::MissionTask& task, const mission::MissionRecord& flown,
+                         std::string title)
     : task_(task),
       flown_(flown),
       title_(std::move(title)),
@@ -92,7 +93,7 @@ cv::Point FilmPicture::OnMap(const Eigen::Vector3d& at_m) const {
 }
 
 cv::Mat FilmPicture::BaseMap() const {
-  const Scene& scene = task_.scene;
+  const world::Scene& scene = task_.scene;
   cv::Mat map(kMap.size(), CV_8UC3, kPaper);
   const cv::Point corner = OnMap({0.0, scene.SizeM().y(), 0.0});
   const cv::Point opposite = OnMap({scene.SizeM().x(), 0.0, 0.0});
@@ -100,15 +101,16 @@ cv::Mat FilmPicture::BaseMap() const {
   const double highest_m =
       std::max(1.0, static_cast<double>(*std::max_element(heights.begin(), heights.end())));
   const cv::Rect ground(corner, opposite);
-  DrawRelief(scene.Ground(), ground.size(), highest_m).copyTo(map(ground));
+  world::DrawRelief(scene.Ground(), ground.size(), highest_m).copyTo(map(ground));
   cv::Mat trees = map.clone();
-  for (const Tree& tree : scene.Trees())
+  for (const world::Tree& tree : scene.Trees())
     cv::circle(trees, OnMap({tree.x_m, tree.y_m, 0.0}),
                std::max(1, static_cast<int>(std::lround(tree.crown_radius_m * px_per_m_))),
                cv::Scalar(58, 96, 62), cv::FILLED, cv::LINE_AA);
   cv::addWeighted(trees, 0.7, map, 0.3, 0.0, map);
-  for (const FireSite& site : scene.Sites()) cv::circle(map, OnMap(site.base_m), 3, kFaint, 1, cv::LINE_AA);
-  const BaseStation& station = scene.BaseStations()[static_cast<std::size_t>(flown_.base_station)];
+  for (const world::FireSite& site : scene.Sites())
+    cv::circle(map, OnMap(site.base_m), 3, kFaint, 1, cv::LINE_AA);
+  const world::BaseStation& station = scene.BaseStations()[static_cast<std::size_t>(flown_.base_station)];
   const cv::Point mast = OnMap(station.antenna_m);
   cv::rectangle(map, mast - cv::Point(5, 5), mast + cv::Point(5, 5), kInk, cv::FILLED);
   cv::rectangle(map, mast - cv::Point(3, 3), mast + cv::Point(3, 3), kStation, cv::FILLED);
@@ -124,7 +126,7 @@ void FilmPicture::DrawMap(const FilmMoment& moment, cv::Mat& canvas) const {
   const cv::Point robot = OnMap(moment.pose.position_m);
   cv::Point from = OnMap({flown_.start_x_m, flown_.start_y_m, flown_.start_z_m});
   for (std::size_t i = 0; i < moment.step; ++i) {
-    const TimestepRecord& step = flown_.steps[i];
+    const mission::TimestepRecord& step = flown_.steps[i];
     const cv::Point to = OnMap({step.x_m, step.y_m, step.z_m});
     cv::line(map, from, to, kPath, 2, cv::LINE_AA);
     from = to;
@@ -144,7 +146,7 @@ void FilmPicture::DrawMap(const FilmMoment& moment, cv::Mat& canvas) const {
 }
 
 void FilmPicture::DrawTold(const FilmMoment& moment, cv::Mat& canvas) const {
-  const TimestepRecord& step = flown_.steps[moment.step];
+  const mission::TimestepRecord& step = flown_.steps[moment.step];
   const double since_s = moment.time_s - begins_s_[moment.step];
   const std::string part = moment.ended ? "ended" : PartText(step, since_s);
   Text(canvas,
@@ -170,11 +172,11 @@ void FilmPicture::DrawTold(const FilmMoment& moment, cv::Mat& canvas) const {
   if (moment.ended || since_s >= MovingS(step))
     Text(canvas,
          fmt::format("{}; {:.1f} Mbit/s to the remote controller",
-                     LookText(static_cast<Execution>(step.execution)), step.rate_bps / 1e6),
+                     LookText(static_cast<agents::Execution>(step.execution)), step.rate_bps / 1e6),
          {16, kTold.y + 112}, 0.5);
   if (moment.ended)
     Text(canvas, OutcomeText(flown_.outcome), {16, kTold.y + 140}, 0.7,
-         flown_.outcome == static_cast<std::int64_t>(Outcome::kSuccess) ? kGood : kBad);
+         flown_.outcome == static_cast<std::int64_t>(mission::Outcome::kSuccess) ? kGood : kBad);
 }
 
 void FilmPicture::DrawScores(const FilmMoment& moment, cv::Mat& canvas) const {
@@ -209,4 +211,4 @@ cv::Mat FilmPicture::Draw(const FilmMoment& moment, const cv::Mat& camera) const
   return canvas;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -7,7 +7,7 @@
 
 #include "engine/mission/mission.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 inline const cv::Size kFilmSizePx{1280, 600};
 inline const cv::Size kFilmCameraPx{800, 450};
@@ -15,14 +15,14 @@ inline const cv::Size kFilmCameraPx{800, 450};
 struct FilmMoment {
   double time_s = 0.0;
   std::size_t step = 0;  // index of the timestep under way
-  Pose pose;
+  robot::Pose pose;
   bool ended = false;
 };
 
 class FilmPicture {
  public:
   // Task and record must outlive this. `title` names the mission.
-  FilmPicture(const MissionTask& task, const MissionRecord& flown, std::string title);
+  FilmPicture(const mission::MissionTask& task, const mission::MissionRecord& flown, std::string title);
 
   // camera: of kFilmCameraPx.
   cv::Mat Draw(const FilmMoment& moment, const cv::Mat& camera) const;
@@ -34,12 +34,12 @@ class FilmPicture {
   void DrawTold(const FilmMoment& moment, cv::Mat& canvas) const;
   void DrawScores(const FilmMoment& moment, cv::Mat& canvas) const;
 
-  const MissionTask& task_;
-  const MissionRecord& flown_;
+  const mission::MissionTask& task_;
+  const mission::MissionRecord& flown_;
   std::string title_;
   std::vector<double> begins_s_;
   double px_per_m_;
   cv::Mat map_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::app

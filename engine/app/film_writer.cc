@@ -13,7 +13,7 @@
 #include "engine/core/shipped.h"
 #include "engine/world/quiet_opencv.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,7 +60,7 @@ FilmWriter::FilmWriter(const fs::path& path, cv::Size size_px, double frames_per
   ED3R_CHECK(size_px.width % 2 == 0 && size_px.height % 2 == 0, "a film's sides are even");
   if (path.extension() != ".mp4")
     throw UserError(fmt::format("--video {}: is not allowed; its name must end in .mp4", path.string()));
-  QuietOpenCv();
+  world::QuietOpenCv();
   codec_ = LoadCodec(path);
   temporary_ = Temporary(path);
   if (codec_->Open(temporary_.string(), frames_per_second, size_px)) return;
@@ -93,4 +93,4 @@ void FilmWriter::Commit() {
   temporary_.clear();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

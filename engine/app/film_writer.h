@@ -7,7 +7,7 @@
 
 #include "engine/app/video_codec.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 class FilmWriter {
  public:
@@ -29,4 +29,4 @@ class FilmWriter {
   int frames_ = 0;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::app

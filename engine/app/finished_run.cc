@@ -12,7 +12,7 @@
 #include "engine/store/finished.h"
 #include "engine/store/reader.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 // This very build: what it prints may differ from what another one does.
@@ -24,20 +24,21 @@ std::string ThisProgram() {
 }
 
 // By what the files contain: worlds and detectors need not be loaded for that.
-bool SameRecipe(const SweepPlan& plan, const std::string& dir) {
-  ResultReader reader(dir);
-  const Recipe& recipe = reader.StoredRecipe();
-  if (recipe.plan_text != plan.CanonicalText() || CodeDifference(recipe.code, CodeOf(plan))) return false;
-  const InputFiles here = ReadInputFiles(plan);
+bool SameRecipe(const sweep::SweepPlan& plan, const std::string& dir) {
+  store::ResultReader reader(dir);
+  const store::Recipe& recipe = reader.StoredRecipe();
+  if (recipe.plan_text != plan.CanonicalText() || store::CodeDifference(recipe.code, schedule::CodeOf(plan)))
+    return false;
+  const schedule::InputFiles here = schedule::ReadInputFiles(plan);
   return recipe.places == here.places && reader.Files() == here.files;
 }
 
 }  // namespace
 
-bool TellFinishedRun(const SweepPlan& plan, const std::string& dir, bool quiet) {
+bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, bool quiet) {
   try {
     const std::string program = ThisProgram();
-    const auto finished = program.empty() ? std::nullopt : RecallFinished(dir, program);
+    const auto finished = program.empty() ? std::nullopt : store::RecallFinished(dir, program);
     if (!finished || (!quiet && finished->table.empty()) || !SameRecipe(plan, dir)) return false;
     if (!quiet)
       fmt::print("{}\n{}: {} stored ({} before)\n{}", finished->table, dir,
@@ -53,9 +54,9 @@ void RememberFinishedRun(const std::string& dir, std::int64_t missions, const st
   const std::string program = ThisProgram();
   if (program.empty()) return;
   try {
-    RememberFinished(dir, {program, missions, table, networks});
+    store::RememberFinished(dir, {program, missions, table, networks});
   } catch (const std::exception&) {  // it saves time, and the results are stored
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -6,15 +6,15 @@
 
 #include "engine/sweep/plan.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 // Where `dir` holds all of this plan, flown by this code with the same files, and has not been touched since this very
 // program found it complete: prints what the command printed then, and returns true. Otherwise, also where anything about the
 // directory is wrong, false: the run itself tells.
-bool TellFinishedRun(const SweepPlan& plan, const std::string& dir, bool quiet);
+bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, bool quiet);
 
 // After a run that was complete: `table` and `networks` as they were printed, "" where the command was quiet.
 void RememberFinishedRun(const std::string& dir, std::int64_t missions, const std::string& table,
                          const std::string& networks);
 
-}  // namespace ed3r
+}  // namespace ed3r::app

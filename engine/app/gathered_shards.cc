@@ -13,7 +13,7 @@
 #include "engine/store/schema.h"
 #include "engine/store/shards.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -27,24 +27,24 @@ std::string NewTemporaryFolder() {
 
 // Whether no mission is missing in the merged run, so that the shards have nothing to add.
 bool IsComplete(const std::string& run_dir) {
-  const std::vector<ArmStatus> arms = ResultReader(run_dir).Status();
-  return std::all_of(arms.begin(), arms.end(), [](const ArmStatus& arm) { return arm.missing == 0; });
+  const std::vector<store::ArmStatus> arms = store::ResultReader(run_dir).Status();
+  return std::all_of(arms.begin(), arms.end(), [](const store::ArmStatus& arm) { return arm.missing == 0; });
 }
 
 }  // namespace
 
 GatheredShards::GatheredShards(const std::string& run_dir) : dir_(run_dir) {
-  std::vector<std::string> stores = ShardDirs(run_dir);
+  std::vector<std::string> stores = store::ShardDirs(run_dir);
   if (stores.empty()) return;
   std::error_code error;  // none there: nothing has been merged yet
-  const std::uintmax_t merged_bytes = fs::file_size(fs::path(run_dir) / kResultsFile, error);
+  const std::uintmax_t merged_bytes = fs::file_size(fs::path(run_dir) / store::kResultsFile, error);
   const bool merged = !error && merged_bytes > 0;
   if (merged && IsComplete(run_dir)) return;
   if (merged) stores.insert(stores.begin(), run_dir);
   temporary_ = NewTemporaryFolder();
   dir_ = (fs::path(temporary_) / "run").string();
   try {
-    MergeStores(dir_, stores);
+    store::MergeStores(dir_, stores);
   } catch (...) {
     fs::remove_all(temporary_, error);
     throw;
@@ -56,4 +56,4 @@ GatheredShards::~GatheredShards() {
   if (!temporary_.empty()) fs::remove_all(temporary_, error);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace ed3r {
+namespace ed3r::app {
 
 // Joins the stores of RUN/shards, and RUN's own where it has one, into a folder in $TMPDIR that goes with this object; a run
 // without shards, or that they have nothing to add to, is read where it is. Changes nothing in RUN. UserError where the stores do not belong together.
@@ -20,4 +20,4 @@ class GatheredShards {
   std::string dir_, temporary_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::app

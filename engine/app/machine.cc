@@ -19,7 +19,7 @@
 #include "engine/core/version.h"
 #include "kernels/simd_level.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 // First value of a "name : value" line of a /proc file; "unknown" when there is none.
@@ -53,8 +53,8 @@ std::map<std::string, std::string> DescribeMachine() {
       {"cpu", ProcValue("/proc/cpuinfo", "model name")},
       {"cores", std::to_string(cores)},
       {"memory", ProcValue("/proc/meminfo", "MemTotal")},
-      {"simd", SimdLevelName(ActiveSimdLevel())},
-      {"simd_supported", SupportedSimdLevels()},
+      {"simd", kernels::SimdLevelName(kernels::ActiveSimdLevel())},
+      {"simd_supported", kernels::SupportedSimdLevels()},
       {"openmp_threads", std::to_string(ObtainedThreads(cores))},
       {"compiler", code.compiler},
       {"flags", code.flags},
@@ -74,4 +74,4 @@ std::map<std::string, std::string> DescribeMachine() {
   };
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

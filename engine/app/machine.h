@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-namespace ed3r {
+namespace ed3r::app {
 
 // cpu, cores, memory, simd, simd_supported, openmp_threads, compiler, flags, commit, source, and one "lib NAME" each.
 // Throws SimdLevelError when ED3R_SIMD is wrong.
@@ -13,4 +13,4 @@ std::map<std::string, std::string> DescribeMachine();
 // Threads that an OpenMP region really gets when `wanted` are asked for.
 int ObtainedThreads(int wanted);
 
-}  // namespace ed3r
+}  // namespace ed3r::app

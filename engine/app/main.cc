@@ -24,7 +24,7 @@
 #include "engine/store/sqlite.h"
 #include "kernels/simd_level.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 std::vector<Command> AddCommands(CLI::App& app) {
@@ -60,7 +60,8 @@ void CheckArguments(int argc, char** argv) {
 std::string VersionText() {
   const CodeVersion code = ThisCode();
   return fmt::format("ed3r {} (commit {}{}, source {}, {})", code.release, code.commit,
-                     code.dirty ? " with changes" : "", code.source_hash, SimdLevelName(ActiveSimdLevel()));
+                     code.dirty ? " with changes" : "", code.source_hash,
+                     kernels::SimdLevelName(kernels::ActiveSimdLevel()));
 }
 
 int RunCommand(int argc, char** argv, CLI::App& program) {
@@ -88,7 +89,7 @@ int Main(int argc, char** argv) {
       "ed3r: flies declared studies of energy-aware wildfire detection and reports them with intervals");
   try {
     return RunCommand(argc, argv, program);
-  } catch (const SimdLevelError& error) {
+  } catch (const kernels::SimdLevelError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return kBadInput;
   } catch (const UserError& error) {
@@ -107,7 +108,7 @@ int Main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "ed3r: out of memory\n");
     return kFailedInside;
-  } catch (const StoreError& error) {
+  } catch (const store::StoreError& error) {
     fmt::print(stderr, "{}\n", OneLine(error.what()));
     return kFailedInside;
   } catch (const std::exception& error) {
@@ -140,12 +141,12 @@ void FillStandardDescriptors() {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app
 
 int main(int argc, char** argv) {
-  ed3r::FillStandardDescriptors();
+  ed3r::app::FillStandardDescriptors();
   // A file that grows beyond its limit is an error of the write, told like any other.
   std::signal(SIGXFSZ, SIG_IGN);
-  ed3r::EndOnInterrupt({.interrupted = ed3r::kInterrupted, .requeue = ed3r::kRequeue});
-  return ed3r::Delivered(ed3r::Main(argc, argv));
+  ed3r::EndOnInterrupt({.interrupted = ed3r::app::kInterrupted, .requeue = ed3r::app::kRequeue});
+  return ed3r::app::Delivered(ed3r::app::Main(argc, argv));
 }

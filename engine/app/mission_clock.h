@@ -6,22 +6,22 @@
 
 #include "engine/mission/record.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 // A timestep's parts follow one another: it moves, senses, computes, transmits.
-inline double MovingS(const TimestepRecord& s) {
+inline double MovingS(const mission::TimestepRecord& s) {
   return s.horizontal_s + s.ascent_s + s.descent_s + s.turning_s;
 }
 
-inline double DurationS(const TimestepRecord& s) {
+inline double DurationS(const mission::TimestepRecord& s) {
   return s.horizontal_s + s.ascent_s + s.descent_s + s.turning_s + s.sensing_s + s.computing_s +
          s.transmitting_s;
 }
 
 // Of each timestep, and the mission's end.
-inline std::vector<double> BeginsS(const MissionRecord& record) {
+inline std::vector<double> BeginsS(const mission::MissionRecord& record) {
   std::vector<double> begins = {0.0};
-  for (const TimestepRecord& step : record.steps) begins.push_back(begins.back() + DurationS(step));
+  for (const mission::TimestepRecord& step : record.steps) begins.push_back(begins.back() + DurationS(step));
   return begins;
 }
 
@@ -31,4 +31,4 @@ inline std::size_t StepAt(const std::vector<double>& begins_s, double time_s) {
   return next == begins_s.begin() ? 0 : static_cast<std::size_t>(next - begins_s.begin()) - 1;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

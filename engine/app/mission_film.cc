@@ -13,27 +13,27 @@
 #include "engine/app/mission_clock.h"
 #include "engine/perception/render/renderer.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 constexpr double kFramesPerSecond = 12.0;
 constexpr double kFaster = 4.0;  // mission time to the film's, at least:
 constexpr double kLongestFilmS = 60.0;
 constexpr int kFramesAtEnd = 24;
-constexpr PictureSize kRendered{640, 360};
+constexpr perception::PictureSize kRendered{640, 360};
 
 // The camera's pictures. A hovering robot's view is traced once for all frames of its timestep; in flight each is traced.
 class FilmCamera {
  public:
-  FilmCamera(const MissionTask& task, const MissionRecord& flown)
-      : renderer_(
-            task.pixels != nullptr ? task.pixels->scene : std::make_shared<const TraceScene>(task.scene),
-            static_cast<int>(flown.site), task.config.perception, task.config.sensing, task.seed,
-            task.scenario),
+  FilmCamera(const mission::MissionTask& task, const mission::MissionRecord& flown)
+      : renderer_(task.pixels != nullptr ? task.pixels->scene
+                                         : std::make_shared<const perception::TraceScene>(task.scene),
+                  static_cast<int>(flown.site), task.config.perception, task.config.sensing, task.seed,
+                  task.scenario),
         frames_(task.config.sensing.Frames()) {}
 
   // number: of the film's frame; the fire flickers with it.
-  cv::Mat Picture(const Pose& pose, std::uint32_t timestep, bool hovers, int number) {
+  cv::Mat Picture(const robot::Pose& pose, std::uint32_t timestep, bool hovers, int number) {
     const int frame = number % frames_;
     if (!hovers) {
       const int one[] = {frame};
@@ -49,7 +49,7 @@ class FilmCamera {
   }
 
  private:
-  static cv::Mat Enlarged(FrameStack& stack, int frame) {
+  static cv::Mat Enlarged(perception::FrameStack& stack, int frame) {
     const std::size_t bytes = static_cast<std::size_t>(stack.width_px) * stack.height_px * 3;
     const cv::Mat rgb(stack.height_px, stack.width_px, CV_8UC3,
                       stack.rgb.data() + static_cast<std::size_t>(frame) * bytes);
@@ -58,38 +58,38 @@ class FilmCamera {
     cv::resize(bgr, large, kFilmCameraPx, 0, 0, cv::INTER_CUBIC);
     return large;
   }
-  static cv::Mat Enlarged(FrameStack&& stack, int frame) { return Enlarged(stack, frame); }
+  static cv::Mat Enlarged(perception::FrameStack&& stack, int frame) { return Enlarged(stack, frame); }
 
-  Renderer renderer_;
+  perception::Renderer renderer_;
   int frames_;
-  FrameStack held_;
+  perception::FrameStack held_;
   std::uint32_t held_of_ = 0;
 };
 
 }  // namespace
 
-MissionFilm::MissionFilm(const MissionTask& task, const std::filesystem::path& path)
+MissionFilm::MissionFilm(const mission::MissionTask& task, const std::filesystem::path& path)
     : task_(task), path_(path), writer_(path, kFilmSizePx, kFramesPerSecond) {}
 
 // On its way along what was followed, from the end of the move on where the record has it.
-Pose MissionFilm::PoseAt(const MissionRecord& flown, std::size_t step, double since_s) const {
-  const TimestepRecord& s = flown.steps[step];
-  const Pose stored{{s.x_m, s.y_m, s.z_m}, s.yaw_rad, s.tilt_rad};
+robot::Pose MissionFilm::PoseAt(const mission::MissionRecord& flown, std::size_t step, double since_s) const {
+  const mission::TimestepRecord& s = flown.steps[step];
+  const robot::Pose stored{{s.x_m, s.y_m, s.z_m}, s.yaw_rad, s.tilt_rad};
   const auto found = track_.find(static_cast<std::uint32_t>(s.k));
   if (found == track_.end() || since_s >= MovingS(s)) return stored;
-  const std::vector<TraceSample>& samples = found->second;
+  const std::vector<robot::TraceSample>& samples = found->second;
   const auto next = std::upper_bound(samples.begin(), samples.end(), since_s,
-                                     [](double at, const TraceSample& t) { return at < t.time_s; });
+                                     [](double at, const robot::TraceSample& t) { return at < t.time_s; });
   if (next == samples.end()) return stored;
   if (next == samples.begin()) return {next->position_m, next->yaw_rad, s.tilt_rad};
-  const TraceSample& before = *(next - 1);
+  const robot::TraceSample& before = *(next - 1);
   const double share = (since_s - before.time_s) / (next->time_s - before.time_s);
   const double turn_rad = std::remainder(next->yaw_rad - before.yaw_rad, 2.0 * std::numbers::pi);
   return {before.position_m + share * (next->position_m - before.position_m),
           before.yaw_rad + share * turn_rad, s.tilt_rad};
 }
 
-std::string MissionFilm::Write(const MissionRecord& flown, const std::string& title) {
+std::string MissionFilm::Write(const mission::MissionRecord& flown, const std::string& title) {
   if (flown.steps.empty()) return fmt::format("{}: no film, as no timestep was flown\n", path_.string());
   const std::vector<double> begins_s = BeginsS(flown);
   const double faster = std::max(kFaster, std::ceil(begins_s.back() / kLongestFilmS));
@@ -98,7 +98,7 @@ std::string MissionFilm::Write(const MissionRecord& flown, const std::string& ti
   const auto draw = [&](double time_s, int number, bool ended) {
     const std::size_t step = StepAt(begins_s, time_s);
     const double since_s = time_s - begins_s[step];
-    const Pose pose = PoseAt(flown, step, since_s);
+    const robot::Pose pose = PoseAt(flown, step, since_s);
     const bool hovers = since_s >= MovingS(flown.steps[step]);
     const cv::Mat seen =
         camera.Picture(pose, static_cast<std::uint32_t>(flown.steps[step].k), hovers, number);
@@ -112,4 +112,4 @@ std::string MissionFilm::Write(const MissionRecord& flown, const std::string& ti
                      writer_.Frames() / kFramesPerSecond, faster);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

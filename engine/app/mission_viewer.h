@@ -6,7 +6,7 @@
 
 #include "engine/app/stored_run.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 // A stored mission flown again, with its path, every timestep as stored, and what both agents thought in it:
 //   name, label, outcome, site, base_station, scenario, seed, eta_min, battery_j, camera {hfov_deg, frames, aspect}, start
@@ -21,6 +21,6 @@ namespace ed3r {
 nlohmann::ordered_json ViewerMission(StoredRun& run, const std::string& mission);
 
 // {name, size_m, cell_m, height_m, trees: [[x_m, y_m, ground_m, height_m, crown_radius_m]...], sites, base_stations, fire}.
-nlohmann::ordered_json ViewerWorld(const Scene& scene);
+nlohmann::ordered_json ViewerWorld(const world::Scene& scene);
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -9,22 +9,22 @@
 #include "engine/core/check.h"
 #include "engine/perception/view.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 // As the mission saw them: from where it stood after the move of each timestep.
-void AddMission(const StoredMission& mission, const Scene& scene, const Config& config, std::uint64_t seed,
-                std::vector<PeriodLook>& looks) {
+void AddMission(const store::StoredMission& mission, const world::Scene& scene, const Config& config,
+                std::uint64_t seed, std::vector<perception_fit::PeriodLook>& looks) {
   if (mission.record.site < 0 || mission.record.site >= std::ssize(scene.Sites()))
     throw UserError(fmt::format("mission {}: the store is damaged (fire site {} of {})", mission.id.mission,
                                 mission.record.site, scene.Sites().size()));
-  const FireView fire(scene, static_cast<int>(mission.record.site));
-  const std::vector<Distractor> distractors =
-      DrawDistractors(scene, config.perception, seed, static_cast<std::uint32_t>(mission.record.scenario));
-  for (const TimestepRecord& step : mission.record.steps) {
-    const View view = fire.Look({{step.x_m, step.y_m, step.z_m}, step.yaw_rad, step.tilt_rad}, config.sensing,
-                                config.perception, distractors);
-    looks.push_back({.quantized = step.execution == static_cast<std::int64_t>(Execution::kQuantized),
+  const perception::FireView fire(scene, static_cast<int>(mission.record.site));
+  const std::vector<perception::Distractor> distractors = perception::DrawDistractors(
+      scene, config.perception, seed, static_cast<std::uint32_t>(mission.record.scenario));
+  for (const mission::TimestepRecord& step : mission.record.steps) {
+    const perception::View view = fire.Look({{step.x_m, step.y_m, step.z_m}, step.yaw_rad, step.tilt_rad},
+                                            config.sensing, config.perception, distractors);
+    looks.push_back({.quantized = step.execution == static_cast<std::int64_t>(agents::Execution::kQuantized),
                      .tilt_rad = step.tilt_rad,
                      .fire_share = view.fire_share,
                      .smoke_share = view.smoke_share,
@@ -41,17 +41,17 @@ void AddMission(const StoredMission& mission, const Scene& scene, const Config& 
 
 PerceptionLooks LooksOfRun(const std::string& dir) {
   StoredRun run(dir, "");
-  const SweepPlan& plan = run.Plan();
+  const sweep::SweepPlan& plan = run.Plan();
   PerceptionLooks found;
   for (int s = 0; s < static_cast<int>(plan.stages.size()); ++s) {
-    const Stage& stage = plan.stages[static_cast<std::size_t>(s)];
+    const sweep::Stage& stage = plan.stages[static_cast<std::size_t>(s)];
     for (int a = 0; a < static_cast<int>(stage.arms.size()); ++a) {
       const Config& config = stage.arms[static_cast<std::size_t>(a)].config;
-      if (stage.kind != StageKind::kFly || config.perception.tier != PerceptionTier::kPixels) continue;
+      if (stage.kind != sweep::StageKind::kFly || config.perception.tier != PerceptionTier::kPixels) continue;
       if (found.looks.empty()) found.configured = config.perception;
-      const Scene& scene = run.SharedInputs().SceneOf(config);
+      const world::Scene& scene = run.SharedInputs().SceneOf(config);
       run.Reader().NeedTimesteps(s);
-      run.Reader().ForEachMission(s, a, Steps::kLoad, [&](const StoredMission& mission) {
+      run.Reader().ForEachMission(s, a, store::Steps::kLoad, [&](const store::StoredMission& mission) {
         AddMission(mission, scene, config, plan.seed, found.looks);
       });
     }
@@ -62,4 +62,4 @@ PerceptionLooks LooksOfRun(const std::string& dir) {
   return found;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -6,14 +6,14 @@
 
 #include "studies/perception/profile_fit.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 struct PerceptionLooks {
-  std::vector<PeriodLook> looks;
+  std::vector<perception_fit::PeriodLook> looks;
   PerceptionConfig configured;  // of the first arm that looked at pixels
 };
 
 // Throws UserError where the run cannot be read again or none of its arms looked at pixels.
 PerceptionLooks LooksOfRun(const std::string& dir);
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -4,10 +4,12 @@
 #include <string>
 #include <vector>
 
-namespace ed3r {
-
+namespace ed3r::report {
 struct Report;
 struct RunResults;
+}  // namespace ed3r::report
+
+namespace ed3r::app {
 
 struct WatchedMission {
   std::string mission;  // STAGE/ARM/NUMBER
@@ -23,7 +25,7 @@ struct WatchedMissions {
 
 // Those of ChooseMissions, flown again. None where the viewer's program is missing; none and a note in the pixel tier (a flight
 // is dear) and where the run cannot be flown again by this code.
-WatchedMissions WatchMissions(const Report& report, const RunResults& results, const std::string& dir,
-                              const std::string& cache_dir);
+WatchedMissions WatchMissions(const report::Report& report, const report::RunResults& results,
+                              const std::string& dir, const std::string& cache_dir);
 
-}  // namespace ed3r
+}  // namespace ed3r::app

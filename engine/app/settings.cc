@@ -5,7 +5,7 @@
 #include "engine/core/check.h"
 #include "engine/sweep/setting.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 void ApplySettings(const std::vector<std::string>& settings, Scope scope, Config& config) {
   for (const std::string& setting : settings) {
@@ -13,7 +13,8 @@ void ApplySettings(const std::vector<std::string>& settings, Scope scope, Config
     if (equals == std::string::npos || equals == 0)
       throw UserError(fmt::format("--set {}: expected KEY=VALUE, e.g. robot.mass_kg=2.1", setting));
     if (setting.substr(0, equals) == "robot") {
-      for (const Setting& part : ReadAirframeFile(setting.substr(equals + 1), "--set " + setting))
+      for (const sweep::Setting& part :
+           sweep::ReadAirframeFile(setting.substr(equals + 1), "--set " + setting))
         SetParameter(config, part.key, part.text, scope);  // checked when it was read
       continue;
     }
@@ -25,4 +26,4 @@ void ApplySettings(const std::vector<std::string>& settings, Scope scope, Config
     throw UserError(fmt::format("--set: {}", problem));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

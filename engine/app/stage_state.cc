@@ -13,12 +13,12 @@
 #include "engine/sweep/plan_text.h"
 #include "studies/report/load.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
-const Stage& FindStage(const SweepPlan& plan, const std::string& dir, const std::string& name) {
+const sweep::Stage& FindStage(const sweep::SweepPlan& plan, const std::string& dir, const std::string& name) {
   std::vector<std::string> names;
-  for (const Stage& stage : plan.stages) {
+  for (const sweep::Stage& stage : plan.stages) {
     if (stage.name == name) return stage;
     names.push_back(stage.name);
   }
@@ -29,23 +29,25 @@ const Stage& FindStage(const SweepPlan& plan, const std::string& dir, const std:
 }  // namespace
 
 int TellStage(const std::string& dir, const std::string& name) {
-  ResultReader reader(dir);
-  const SweepPlan plan = PlanOf(ReadPlanText(reader.StoredRecipe().plan_text), dir);
-  const Stage& stage = FindStage(plan, dir, name);
-  const std::vector<RunId> stored = reader.Stored();
-  const StageProgress progress = ProgressOf(plan, name, stored, dir, HalfWidth);
+  store::ResultReader reader(dir);
+  const sweep::SweepPlan plan = sweep::PlanOf(sweep::ReadPlanText(reader.StoredRecipe().plan_text), dir);
+  const sweep::Stage& stage = FindStage(plan, dir, name);
+  const std::vector<sweep::RunId> stored = reader.Stored();
+  const schedule::StageProgress progress = schedule::ProgressOf(plan, name, stored, dir, report::HalfWidth);
   if (progress.open.empty()) {
     fmt::print("stage {}: finished\n", name);
     return kDone;
   }
-  const std::vector<FailedMission> failures = reader.Failures();
-  const auto failed = std::count_if(failures.begin(), failures.end(), [&](const FailedMission& failure) {
-    return plan.stages[static_cast<std::size_t>(failure.id.stage)].name == name && progress.Asks(failure.id);
-  });
+  const std::vector<store::FailedMission> failures = reader.Failures();
+  const auto failed =
+      std::count_if(failures.begin(), failures.end(), [&](const store::FailedMission& failure) {
+        return plan.stages[static_cast<std::size_t>(failure.id.stage)].name == name &&
+               progress.Asks(failure.id);
+      });
   fmt::print("stage {}: {} missing, {} failed, up to mission {} of {}\n", name,
              Counted(progress.missing - failed, "mission"), failed, progress.upto,
              Counted(static_cast<std::int64_t>(progress.open.size()), "arm"));
   return stage.precision && failed == 0 ? kRequeue : kMissionsFailed;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -19,7 +19,7 @@
 #include "engine/store/sqlite.h"
 #include "engine/store/tally.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 // Comparing a record with its checksum takes microseconds.
@@ -30,13 +30,13 @@ constexpr double kStill_s = 120.0;
 struct Found {
   std::string name;
   std::size_t stores = 0, growing = 0;
-  std::vector<ArmStatus> arms;
+  std::vector<store::ArmStatus> arms;
   std::map<std::string, std::string> unreadable;  // store -> why
   double missions_per_s = 0.0;
 
   std::int64_t Missing() const {
     std::int64_t missing = 0;
-    for (const ArmStatus& arm : arms) missing += arm.missing;
+    for (const store::ArmStatus& arm : arms) missing += arm.missing;
     return missing;
   }
   // "" when nothing grows or nothing is missing.
@@ -50,25 +50,26 @@ struct Found {
 
 bool HoldsResults(const std::string& dir) {
   std::error_code error;
-  const std::uintmax_t bytes = std::filesystem::file_size(std::filesystem::path(dir) / kResultsFile, error);
+  const std::uintmax_t bytes =
+      std::filesystem::file_size(std::filesystem::path(dir) / store::kResultsFile, error);
   return !error && bytes > 0;
 }
 
 Found Look(const std::string& dir) {
-  std::vector<std::string> stores = ShardDirs(dir);
+  std::vector<std::string> stores = store::ShardDirs(dir);
   if (HoldsResults(dir)) stores.insert(stores.begin(), dir);
   Found found;
   found.stores = stores.size();
-  std::optional<Tally> tally;
+  std::optional<store::Tally> tally;
   for (const std::string& store : stores) {
     try {
       if (!tally) {
-        const ResultReader reader(store);
+        const store::ResultReader reader(store);
         found.name = reader.Layout().name;
         tally.emplace(reader.Layout());
       }
       tally->Add(store);
-      const double pace = MissionsPerSecond(store, kStill_s);
+      const double pace = store::MissionsPerSecond(store, kStill_s);
       found.missions_per_s += pace;
       found.growing += pace > 0 ? 1 : 0;
     } catch (const UserError& error) {
@@ -94,7 +95,7 @@ void PrintJson(const Found& found) {
 void PrintText(const Found& found) {
   fmt::print("{:<12} {:<28} {:>8} {:>8} {:>8} {:>8}\n", "stage", "arm", "planned", "done", "failed",
              "missing");
-  for (const ArmStatus& arm : found.arms)
+  for (const store::ArmStatus& arm : found.arms)
     fmt::print("{:<12} {:<28} {:>8} {:>8} {:>8} {:>8}\n", arm.stage, arm.arm, arm.planned, arm.done,
                arm.failed, arm.missing);
   fmt::print("{}, {} growing", Counted(static_cast<std::int64_t>(found.stores), "store"), found.growing);
@@ -105,9 +106,9 @@ void PrintText(const Found& found) {
 
 }  // namespace
 
-nlohmann::ordered_json ArmsJson(const std::vector<ArmStatus>& arms) {
+nlohmann::ordered_json ArmsJson(const std::vector<store::ArmStatus>& arms) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const ArmStatus& arm : arms)
+  for (const store::ArmStatus& arm : arms)
     json.push_back({{"stage", arm.stage},
                     {"arm", arm.arm},
                     {"planned", arm.planned},
@@ -118,9 +119,10 @@ nlohmann::ordered_json ArmsJson(const std::vector<ArmStatus>& arms) {
 }
 
 bool IsTallied(const std::string& dir) {
-  if (!ShardDirs(dir).empty()) return true;
+  if (!store::ShardDirs(dir).empty()) return true;
   if (!HoldsResults(dir)) return false;
-  Connection database((std::filesystem::path(dir) / kResultsFile).string(), Connection::Access::kReadOnly);
+  store::Connection database((std::filesystem::path(dir) / store::kResultsFile).string(),
+                             store::Connection::Access::kReadOnly);
   return database.Int("SELECT count(*) FROM sqlite_schema WHERE name = 'timings'") > 0 &&
          database.Int(fmt::format("SELECT count(*) FROM (SELECT 1 FROM timings LIMIT {})",
                                   kMostCompared + 1)) > kMostCompared;
@@ -132,4 +134,4 @@ int TellTally(const std::string& dir, bool json) {
   return found.unreadable.empty() ? kDone : kFailedInside;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

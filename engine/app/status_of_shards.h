@@ -7,10 +7,10 @@
 
 #include "engine/store/reader.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 // As 'ed3r status --json' lists them.
-nlohmann::ordered_json ArmsJson(const std::vector<ArmStatus>& arms);
+nlohmann::ordered_json ArmsJson(const std::vector<store::ArmStatus>& arms);
 
 // Whether there are shards, or more missions than can be compared with their checksums in a second.
 bool IsTallied(const std::string& dir);
@@ -19,4 +19,4 @@ bool IsTallied(const std::string& dir);
 // when all should be done by the pace of those that grow. Returns kDone, or kFailedInside where a store cannot be read.
 int TellTally(const std::string& dir, bool json);
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -18,19 +18,19 @@
 #include "studies/report/load.h"
 #include "studies/report/page_parts.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 constexpr auto kNap = std::chrono::milliseconds(100);  // how late Ctrl-C may be seen
 constexpr double kMinute_s = 60, kHour_s = 3600;
 
-std::string PlusMinus(const MetricValue& value, int decimals, const char* unit) {
+std::string PlusMinus(const metrics::MetricValue& value, int decimals, const char* unit) {
   if (std::isnan(value.lo)) return "";
   return fmt::format("{:.{}f} ± {:.{}f} {}", value.value, decimals, 0.5 * (value.hi - value.lo), decimals,
                      unit);
 }
 
-std::string KnownText(const StatusLook& look, const ArmStatus& arm) {
+std::string KnownText(const StatusLook& look, const store::ArmStatus& arm) {
   for (const StatusLook::Known& known : look.known)
     if (known.stage == arm.stage && known.arm == arm.arm && !known.success.empty())
       return known.success + ", " + known.energy;
@@ -67,13 +67,13 @@ bool Sleep(int seconds) {
 
 std::int64_t StatusLook::Done() const {
   std::int64_t done = 0;
-  for (const ArmStatus& arm : arms) done += arm.done + arm.failed;
+  for (const store::ArmStatus& arm : arms) done += arm.done + arm.failed;
   return done;
 }
 
 std::int64_t StatusLook::Missing() const {
   std::int64_t missing = 0;
-  for (const ArmStatus& arm : arms) missing += arm.missing;
+  for (const store::ArmStatus& arm : arms) missing += arm.missing;
   return missing;
 }
 
@@ -91,15 +91,15 @@ std::string StatusLook::Left() const {
 
 StatusLook LookAt(const std::string& dir) {
   StatusLook look;
-  ResultReader reader(dir);
+  store::ResultReader reader(dir);
   look.name = reader.Layout().name;
   look.arms = reader.Status();
-  for (const ArmData& arm : LoadRun(dir).arms) {
-    for (ArmStatus& status : look.arms)
+  for (const metrics::ArmData& arm : report::LoadRun(dir).arms) {
+    for (store::ArmStatus& status : look.arms)
       if (status.stage == arm.stage && status.arm == arm.name)
         status.missing = arm.missing;  // none where a precision has been reached
     if (arm.missions.empty()) continue;
-    const ArmMetrics metrics = ComputeMetrics(arm);
+    const metrics::ArmMetrics metrics = metrics::ComputeMetrics(arm);
     look.known.push_back({arm.stage, arm.name, PlusMinus(metrics["msr_pct"], 1, "%"),
                           PlusMinus(metrics["total_energy_kj"], 2, "kJ")});
   }
@@ -110,7 +110,7 @@ std::string StatusText(const StatusLook& look) {
   std::string text =
       fmt::format("{}: {}\n\n{:<12} {:<24} {:>8} {:>8} {:>8} {:>8}  {}\n", look.name, Summary(look), "stage",
                   "arm", "planned", "done", "failed", "missing", "success, energy with 95 %");
-  for (const ArmStatus& arm : look.arms)
+  for (const store::ArmStatus& arm : look.arms)
     text += fmt::format("{:<12} {:<24} {:>8} {:>8} {:>8} {:>8}  {}\n", arm.stage, arm.arm, arm.planned,
                         arm.done, arm.failed, arm.missing, KnownText(look, arm));
   return text;
@@ -134,16 +134,16 @@ std::string StatusPage(const StatusLook& look, int seconds) {
       "<tr><th>stage</th><th>arm</th><th>planned</th><th>done</th><th>failed</th><th>missing</th>"
       "<th>success, energy with 95 %</th></tr>\n",
       ended ? "" : fmt::format("<meta http-equiv=\"refresh\" content=\"{}\">", seconds), 100 * share,
-      HtmlText(look.name), HtmlText(look.name), Summary(look),
+      report::HtmlText(look.name), report::HtmlText(look.name), Summary(look),
       ended ? "."
             : fmt::format("; as of {:%Y-%m-%d %H:%M:%S} UTC, this page shows itself anew every {} s.",
                           fmt::gmtime(std::time(nullptr)), seconds),
       share);
-  for (const ArmStatus& arm : look.arms)
+  for (const store::ArmStatus& arm : look.arms)
     page += fmt::format(
         "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-        HtmlText(arm.stage), HtmlText(arm.arm), arm.planned, arm.done, arm.failed, arm.missing,
-        KnownText(look, arm));
+        report::HtmlText(arm.stage), report::HtmlText(arm.arm), arm.planned, arm.done, arm.failed,
+        arm.missing, KnownText(look, arm));
   return page + "</table></div></main></body></html>\n";
 }
 
@@ -164,4 +164,4 @@ int WatchStatus(const WatchOptions& options) {
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

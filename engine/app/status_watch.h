@@ -6,12 +6,12 @@
 
 #include "engine/store/reader.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 // One look at a run. `seconds` since the first look, and what was done then, give rates and the expected end.
 struct StatusLook {
   std::string name;
-  std::vector<ArmStatus> arms;
+  std::vector<store::ArmStatus> arms;
   struct Known {
     std::string stage, arm;
     std::string success, energy;  // "97.7 ± 1.6 %"; "" before two missions
@@ -46,4 +46,4 @@ struct WatchOptions {
 // Looks every `seconds` until nothing is missing or Ctrl-C; returns the exit status. Throws UserError as ResultReader.
 int WatchStatus(const WatchOptions& options);
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -13,31 +13,31 @@
 #include "engine/sweep/plan_text.h"
 #include "engine/sweep/setting.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 std::string JoinedLines(const std::vector<std::string>& lines) {
   return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
-SweepPlan StoredPlan(const ResultReader& reader, const RestoredFiles& files) {
-  const Recipe& recipe = reader.StoredRecipe();
-  SweepPlan plan = PlanOf(ReadPlanText(recipe.plan_text), reader.dir());
-  if (const auto code = CodeDifference(recipe.code, CodeOf(plan)))
+sweep::SweepPlan StoredPlan(const store::ResultReader& reader, const store::RestoredFiles& files) {
+  const store::Recipe& recipe = reader.StoredRecipe();
+  sweep::SweepPlan plan = sweep::PlanOf(sweep::ReadPlanText(recipe.plan_text), reader.dir());
+  if (const auto code = store::CodeDifference(recipe.code, schedule::CodeOf(plan)))
     throw UserError(fmt::format("{}: {}; build that version to fly its missions again", reader.dir(), *code));
   if (plan.CanonicalText() != recipe.plan_text)
     throw UserError(fmt::format("{}: its plan is of another version of ed3r", reader.dir()));
-  for (Stage& stage : plan.stages)
-    for (Arm& arm : stage.arms)
+  for (sweep::Stage& stage : plan.stages)
+    for (sweep::Arm& arm : stage.arms)
       for (const auto& [key, called] : arm.files) {
-        if (called == FileNotNeeded(key)) continue;
+        if (called == sweep::FileNotNeeded(key)) continue;
         const std::string problem = SetParameter(arm.config, key, files.PathOf(called));
         ED3R_CHECK(problem.empty(), problem);
       }
   return plan;
 }
 
-void CheckSameInputs(const ResultReader& reader, const std::map<std::string, std::string>& here) {
+void CheckSameInputs(const store::ResultReader& reader, const std::map<std::string, std::string>& here) {
   for (const auto& [name, fingerprint] : reader.StoredRecipe().inputs) {
     const auto found = here.find(name);
     if (found == here.end() || found->second != fingerprint)
@@ -46,17 +46,18 @@ void CheckSameInputs(const ResultReader& reader, const std::map<std::string, std
 }
 
 // With their stages in front where the word has one, too.
-std::vector<std::string> ArmNames(const SweepPlan& plan, bool with_stage) {
+std::vector<std::string> ArmNames(const sweep::SweepPlan& plan, bool with_stage) {
   std::vector<std::string> names;
-  for (const Stage& stage : plan.stages)
-    for (const Arm& arm : stage.arms)
-      if (stage.kind == StageKind::kFly) names.push_back(with_stage ? stage.name + "/" + arm.name : arm.name);
+  for (const sweep::Stage& stage : plan.stages)
+    for (const sweep::Arm& arm : stage.arms)
+      if (stage.kind == sweep::StageKind::kFly)
+        names.push_back(with_stage ? stage.name + "/" + arm.name : arm.name);
   return names;
 }
 
 // What is wrong with "TEXT/NUMBER" when no arm is called TEXT, or with a text that has no number.
 std::string UnknownMission(const std::string& mission, const std::string& arm, bool numbered,
-                           const SweepPlan& plan) {
+                           const sweep::SweepPlan& plan) {
   std::string problem = "expected ARM/NUMBER";
   if (numbered) {
     problem = "no arm " + arm;
@@ -86,7 +87,7 @@ StoredRun::StoredRun(const std::string& dir, const std::string& cache_dir)
   CheckSameInputs(reader_, inputs_.Fingerprints(plan_));
 }
 
-RunId StoredRun::Find(const std::string& mission) const {
+sweep::RunId StoredRun::Find(const std::string& mission) const {
   const auto slash = mission.rfind('/');
   const std::string arm_text = slash == std::string::npos ? "" : mission.substr(0, slash);
   int number = -1;
@@ -95,7 +96,7 @@ RunId StoredRun::Find(const std::string& mission) const {
     if (std::from_chars(mission.data() + slash + 1, end, number).ptr != end) number = -1;
   }
   for (std::size_t s = 0; s < plan_.stages.size(); ++s) {
-    const Stage& stage = plan_.stages[s];
+    const sweep::Stage& stage = plan_.stages[s];
     for (std::size_t a = 0; a < stage.arms.size(); ++a) {
       const std::string& name = stage.arms[a].name;
       if (arm_text != name && arm_text != stage.name + "/" + name) continue;
@@ -108,20 +109,21 @@ RunId StoredRun::Find(const std::string& mission) const {
   throw UserError(UnknownMission(mission, arm_text, number >= 0, plan_));
 }
 
-MissionTask StoredRun::Task(const RunId& id) {
-  const Arm& arm = plan_.stages[static_cast<std::size_t>(id.stage)].arms[static_cast<std::size_t>(id.arm)];
-  if (FindStrategy(arm.config.mission.strategy).outside)
+mission::MissionTask StoredRun::Task(const sweep::RunId& id) {
+  const sweep::Arm& arm =
+      plan_.stages[static_cast<std::size_t>(id.stage)].arms[static_cast<std::size_t>(id.arm)];
+  if (agents::FindStrategy(arm.config.mission.strategy).outside)
     throw UserError(
         fmt::format("{}: arm {}: the decisions of strategy {} came from a program, which alone can fly its "
                     "missions again",
-                    reader_.dir(), arm.name, kOutsideStrategy));
-  if (networks_ == nullptr && NeedsTraining(arm.config)) {
-    const FlownNetworks flown = reader_.Networks();
-    networks_ = flown.uses.empty()
-                    ? TrainNetworks(plan_, {"", reader_.dir(), cache_dir_, ThreadsFor(0), nullptr})
-                    : NetworkShelf::From(flown, reader_.dir());
+                    reader_.dir(), arm.name, agents::kOutsideStrategy));
+  if (networks_ == nullptr && schedule::NeedsTraining(arm.config)) {
+    const store::FlownNetworks flown = reader_.Networks();
+    networks_ = flown.uses.empty() ? schedule::TrainNetworks(plan_, {"", reader_.dir(), cache_dir_,
+                                                                     schedule::ThreadsFor(0), nullptr})
+                                   : schedule::NetworkShelf::From(flown, reader_.dir());
   }
-  return TaskOf(plan_, inputs_, networks_.get(), id);
+  return schedule::TaskOf(plan_, inputs_, networks_.get(), id);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -10,7 +10,7 @@
 #include "engine/store/reader.h"
 #include "engine/store/restored_files.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 // How the sweep was asked for, for people who read a report; stored with each session.
 std::map<std::string, std::string> NotesOf(const SweepArguments& arguments);
@@ -22,23 +22,23 @@ class StoredRun {
   StoredRun(const std::string& dir, const std::string& cache_dir);
 
   // "ARM/NUMBER" or "STAGE/ARM/NUMBER", numbers from 0. Throws UserError that names the nearest arm or lists them.
-  RunId Find(const std::string& mission) const;
+  sweep::RunId Find(const std::string& mission) const;
 
   // With the networks that flew, where the mission's strategy asks any; a run of format 1 keeps none, so that they are
   // trained or found again.
-  MissionTask Task(const RunId& id);
+  mission::MissionTask Task(const sweep::RunId& id);
 
-  ResultReader& Reader() { return reader_; }
-  const SweepPlan& Plan() const { return plan_; }
-  const Inputs& SharedInputs() const { return inputs_; }
+  store::ResultReader& Reader() { return reader_; }
+  const sweep::SweepPlan& Plan() const { return plan_; }
+  const schedule::Inputs& SharedInputs() const { return inputs_; }
 
  private:
-  ResultReader reader_;
+  store::ResultReader reader_;
   std::string cache_dir_;
-  RestoredFiles files_;
-  SweepPlan plan_;
-  Inputs inputs_;
-  std::unique_ptr<NetworkShelf> networks_;
+  store::RestoredFiles files_;
+  sweep::SweepPlan plan_;
+  schedule::Inputs inputs_;
+  std::unique_ptr<schedule::NetworkShelf> networks_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::app

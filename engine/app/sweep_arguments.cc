@@ -10,7 +10,7 @@
 #include "engine/sweep/sweep_file.h"
 #include "studies/metrics/definitions.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 template <class Integer>
@@ -23,11 +23,11 @@ std::optional<Integer> ParseOption(const char* option, const std::string& text, 
   return value;
 }
 
-MissionsOverride ParseMissions(const std::string& text) {
+sweep::MissionsOverride ParseMissions(const std::string& text) {
   const std::size_t equals = text.find('=');
   const bool named = equals != std::string::npos;
   const std::string number = text.substr(named ? equals + 1 : 0);
-  const auto value = ParseOption<int>("--missions", number, 1, static_cast<int>(kMaxMissions));
+  const auto value = ParseOption<int>("--missions", number, 1, static_cast<int>(sweep::kMaxMissions));
   if (!value || equals == 0)
     throw UserError(fmt::format("--missions: '{}' is not allowed; allowed: N or STAGE=N", text));
   return {named ? text.substr(0, equals) : "", *value};
@@ -45,17 +45,17 @@ void SweepArguments::AddTo(CommandLine& parser) {
       .OneValue();
 }
 
-SweepPlan SweepArguments::Load() const {
-  SweepOverrides overrides;
+sweep::SweepPlan SweepArguments::Load() const {
+  sweep::SweepOverrides overrides;
   overrides.set = set;
   overrides.seed = ParseOption<std::uint64_t>("--seed", seed, 0, UINT64_MAX);
   for (const std::string& text : missions) overrides.missions.push_back(ParseMissions(text));
-  return LoadSweep(file, overrides, [](const std::string& key, const std::string& value) {
-    if (key == "precision.metric") return CheckMetricName(value);
-    return key == "mission.strategy" ? CheckStrategyName(value) : std::string();
+  return sweep::LoadSweep(file, overrides, [](const std::string& key, const std::string& value) {
+    if (key == "precision.metric") return metrics::CheckMetricName(value);
+    return key == "mission.strategy" ? agents::CheckStrategyName(value) : std::string();
   });
 }
 
-std::string DefaultRunDir(const SweepPlan& plan) { return "results/runs/" + plan.name; }
+std::string DefaultRunDir(const sweep::SweepPlan& plan) { return "results/runs/" + plan.name; }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -7,7 +7,7 @@
 #include "engine/app/command_line.h"
 #include "engine/sweep/plan.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 struct SweepArguments {
   std::string file;
@@ -16,10 +16,10 @@ struct SweepArguments {
   std::vector<std::string> missions;  // "N" or "STAGE=N"; empty for the file's own
 
   void AddTo(CommandLine& parser);
-  SweepPlan Load() const;  // throws UserError
+  sweep::SweepPlan Load() const;  // throws UserError
 };
 
 // results/runs/<sweep name>
-std::string DefaultRunDir(const SweepPlan& plan);
+std::string DefaultRunDir(const sweep::SweepPlan& plan);
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -2,7 +2,7 @@
 
 #include <opencv2/videoio.hpp>
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 class OpenCvCodec : public VideoCodec {
@@ -27,6 +27,6 @@ class OpenCvCodec : public VideoCodec {
 };
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app
 
-extern "C" ed3r::VideoCodec* Ed3rNewVideoCodec() { return new ed3r::OpenCvCodec; }
+extern "C" ed3r::app::VideoCodec* Ed3rNewVideoCodec() { return new ed3r::app::OpenCvCodec; }

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-namespace ed3r {
+namespace ed3r::app {
 
 class VideoCodec {
  public:
@@ -21,4 +21,4 @@ class VideoCodec {
 inline constexpr const char* kNewVideoCodec = "Ed3rNewVideoCodec";
 using NewVideoCodec = VideoCodec*();
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -11,12 +11,12 @@
 #include "engine/core/check.h"
 #include "engine/perception/render/renderer.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr PictureSize kSizes[] = {{320, 180}, {192, 108}, {128, 72}, {96, 54}};
+constexpr perception::PictureSize kSizes[] = {{320, 180}, {192, 108}, {128, 72}, {96, 54}};
 constexpr int kJpegQuality = 78;
 
 std::string Base64(const std::vector<unsigned char>& bytes) {
@@ -27,7 +27,7 @@ std::string Base64(const std::vector<unsigned char>& bytes) {
   return text;
 }
 
-std::string AsJpeg(FrameStack frame) {
+std::string AsJpeg(perception::FrameStack frame) {
   const cv::Mat rgb(frame.height_px, frame.width_px, CV_8UC3, frame.rgb.data());
   cv::Mat bgr;
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
@@ -38,18 +38,18 @@ std::string AsJpeg(FrameStack frame) {
 
 }  // namespace
 
-Json ViewerFrames(const MissionTask& task, const MissionRecord& flown) {
+Json ViewerFrames(const mission::MissionTask& task, const mission::MissionRecord& flown) {
   if (task.pixels == nullptr) return nullptr;
-  const Renderer renderer(task.pixels->scene, static_cast<int>(flown.site), task.config.perception,
-                          task.config.sensing, task.seed, task.scenario);
+  const perception::Renderer renderer(task.pixels->scene, static_cast<int>(flown.site),
+                                      task.config.perception, task.config.sensing, task.seed, task.scenario);
   const int middle[] = {task.config.sensing.Frames() / 2};
   Json found;
-  for (const PictureSize size : kSizes) {
+  for (const perception::PictureSize size : kSizes) {
     std::size_t bytes = 0;
     found = {{"number", middle[0]}, {"width_px", size.width_px}, {"height_px", size.height_px}};
     found["jpeg"] = Json::array();
-    for (const TimestepRecord& step : flown.steps) {
-      const Pose pose{{step.x_m, step.y_m, step.z_m}, step.yaw_rad, step.tilt_rad};
+    for (const mission::TimestepRecord& step : flown.steps) {
+      const robot::Pose pose{{step.x_m, step.y_m, step.z_m}, step.yaw_rad, step.tilt_rad};
       found["jpeg"].push_back(
           AsJpeg(renderer.Sense(pose, static_cast<std::uint32_t>(step.k), middle, size).frames));
       bytes += found["jpeg"].back().get_ref<const std::string&>().size();
@@ -61,4 +61,4 @@ Json ViewerFrames(const MissionTask& task, const MissionRecord& flown) {
   return found;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -10,7 +10,7 @@
 
 #include "engine/core/suggest.h"
 
-namespace ed3r {
+namespace ed3r::app {
 
 // "1 thread", "2 threads"
 inline std::string Counted(std::int64_t count, std::string_view noun) {
@@ -23,4 +23,4 @@ inline std::string DidYouMean(std::string_view word, const std::vector<std::stri
   return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -201,10 +201,14 @@ struct NetworksConfig {
     constexpr std::string_view kSource = "none in the paper";
     visit("rc", self.rc,
           {.source = kSource,
-           .meaning = "network of the RC: trained, or an ONNX network's path from the sweep file"});
+           .meaning = "network of the RC: trained, or an ONNX network's path from the sweep file",
+           .is_file = true,
+           .or_else = "trained"});
     visit("robot", self.robot,
           {.source = kSource,
-           .meaning = "network of the robot: trained, or an ONNX network's path from the sweep file"});
+           .meaning = "network of the robot: trained, or an ONNX network's path from the sweep file",
+           .is_file = true,
+           .or_else = "trained"});
   }
 };
 

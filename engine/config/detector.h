@@ -50,12 +50,16 @@ struct DetectorConfig {
   static void Describe(Self& self, Visitor&& visit) {
     constexpr std::string_view kSource = "none in the paper";
     constexpr std::string_view kModel = "Table of CV models";
-    visit(
-        "full", self.full,
-        {.source = kModel, .meaning = "Full network: builtin, or an ONNX model's path from the sweep file"});
+    visit("full", self.full,
+          {.source = kModel,
+           .meaning = "Full network: builtin, or an ONNX model's path from the sweep file",
+           .is_file = true,
+           .or_else = "builtin"});
     visit("quantized", self.quantized,
           {.source = kModel,
-           .meaning = "Quantized network: builtin, or an ONNX model's path from the sweep file"});
+           .meaning = "Quantized network: builtin, or an ONNX model's path from the sweep file",
+           .is_file = true,
+           .or_else = "builtin"});
     visit("input_width_px", self.input_width_px,
           {.unit = "px",
            .min = 0,

@@ -31,6 +31,8 @@ struct FieldInfo {
   std::string_view source = {};  // table, equation or reading
   std::string_view meaning = {};
   Scope scope = Scope::kMission;
+  bool is_file = false;           // text: the path of a file, from the folder of the sweep file
+  std::string_view or_else = {};  // the word that stands for none in a file's place
 };
 
 template <class Enum>

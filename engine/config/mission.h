@@ -35,7 +35,7 @@ struct MissionConfig {
     visit("strategy", self.strategy,
           {.source = "Result 2, Result 3", .meaning = "who decides what: a name of the strategy table"});
     visit("world", self.world,
-          {.source = "3D Environment", .meaning = "world file, relative to the sweep file"});
+          {.source = "3D Environment", .meaning = "world file, relative to the sweep file", .is_file = true});
     visit("sites", self.sites,
           {.source = "R26, R27", .meaning = "fire sites in play: all, or those known from the warm-up"});
     visit("base_stations", self.base_stations,

@@ -97,7 +97,8 @@ std::vector<ParameterInfo> ListParameters() {
   const Config defaults;
   ForEachField(defaults, [&](const std::string& key, const auto& field, const FieldInfo& info) {
     list.push_back({key, std::string(info.unit), ToText(field), Allowed<std::decay_t<decltype(field)>>(info),
-                    std::string(info.source), std::string(info.meaning), info.scope});
+                    std::string(info.source), std::string(info.meaning), info.scope, info.is_file,
+                    std::string(info.or_else)});
   });
   return list;
 }
@@ -165,6 +166,7 @@ std::string CheckParameters(const Config& c) {
         ordered("radio.efficiency_min", c.radio.efficiency_min, "radio.efficiency_max",
                 c.radio.efficiency_max),
         ordered("radio.power_min_dbm", c.radio.power_min_dbm, "radio.power_max_dbm", c.radio.power_max_dbm),
+        ordered("sensing.lidar_rate_hz", c.sensing.lidar_rate_hz, "mission.physics_hz", c.mission.physics_hz),
         ordered("agents.eta_int", c.agents.eta_int, "agents.eta_min", c.agents.eta_min)}) {
     if (!problem.empty()) return problem;
   }

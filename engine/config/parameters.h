@@ -18,6 +18,8 @@ struct ParameterInfo {
   std::string source;
   std::string meaning;
   Scope scope = Scope::kMission;
+  bool is_file = false;  // a world, a detector, a network
+  std::string or_else;   // the word that stands for none in a file's place; "" where none does
 };
 
 // Every parameter, in the order of the structs.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ed3r {
+namespace ed3r::mission {
 
 double MovementJ(const TimestepRecord& s) {
   return s.horizontal_j + s.ascent_j + s.descent_j + s.hover_turning_j + s.hover_sensing_j +
@@ -15,8 +15,8 @@ double DurationS(const TimestepRecord& s) {
          s.transmitting_s;
 }
 
-TimestepRecord OpenStep(std::uint32_t k, const MotionDecision& motion, const FlownMove& move,
-                        const ExecutionDecision& execution) {
+TimestepRecord OpenStep(std::uint32_t k, const agents::MotionDecision& motion, const robot::FlownMove& move,
+                        const agents::ExecutionDecision& execution) {
   TimestepRecord step;
   step.k = k;
   step.command_dx_m = motion.command.displacement_m.x();
@@ -41,7 +41,8 @@ TimestepRecord OpenStep(std::uint32_t k, const MotionDecision& motion, const Flo
   return step;
 }
 
-void RecordLink(const Conditions& conditions, double rc_distance_m, const Link& link, TimestepRecord& step) {
+void RecordLink(const Conditions& conditions, double rc_distance_m, const radio::Link& link,
+                TimestepRecord& step) {
   step.cpu_hz = conditions.cpu_hz;
   step.bandwidth_hz = conditions.bandwidth_hz;
   step.shadowing_db = conditions.shadowing_db;
@@ -50,7 +51,7 @@ void RecordLink(const Conditions& conditions, double rc_distance_m, const Link& 
   step.transmit_power_w = link.transmit_power_w;
 }
 
-void RecordLedger(const StepTime& time, const StepEnergy& energy, double battery_left_j,
+void RecordLedger(const robot::StepTime& time, const robot::StepEnergy& energy, double battery_left_j,
                   TimestepRecord& step) {
   step.horizontal_s = time.horizontal_s;
   step.ascent_s = time.ascent_s;
@@ -84,10 +85,10 @@ void SumSteps(double eta_min, MissionRecord& record) {
     record.total_j += step.total_j;
     record.contact_steps += step.contact_steps;
     record.halts += step.halted;
-    record.offloads += step.execution == static_cast<std::int64_t>(Execution::kOffload);
-    record.full_local += step.execution == static_cast<std::int64_t>(Execution::kFull);
-    record.quantized_local += step.execution == static_cast<std::int64_t>(Execution::kQuantized);
-    record.random_motions += step.motion_rule == static_cast<std::int64_t>(MotionRule::kRandom);
+    record.offloads += step.execution == static_cast<std::int64_t>(agents::Execution::kOffload);
+    record.full_local += step.execution == static_cast<std::int64_t>(agents::Execution::kFull);
+    record.quantized_local += step.execution == static_cast<std::int64_t>(agents::Execution::kQuantized);
+    record.random_motions += step.motion_rule == static_cast<std::int64_t>(agents::MotionRule::kRandom);
     record.reward_sum += step.reward;
     if (step.scs >= eta_min) {
       ++record.reliable_timesteps;
@@ -102,4 +103,4 @@ void SumSteps(double eta_min, MissionRecord& record) {
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::mission

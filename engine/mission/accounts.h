@@ -8,12 +8,13 @@
 #include "engine/radio/link.h"
 #include "engine/robot/ledger.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 
-TimestepRecord OpenStep(std::uint32_t k, const MotionDecision& motion, const FlownMove& move,
-                        const ExecutionDecision& execution);
-void RecordLink(const Conditions& conditions, double rc_distance_m, const Link& link, TimestepRecord& step);
-void RecordLedger(const StepTime& time, const StepEnergy& energy, double battery_left_j,
+TimestepRecord OpenStep(std::uint32_t k, const agents::MotionDecision& motion, const robot::FlownMove& move,
+                        const agents::ExecutionDecision& execution);
+void RecordLink(const Conditions& conditions, double rc_distance_m, const radio::Link& link,
+                TimestepRecord& step);
+void RecordLedger(const robot::StepTime& time, const robot::StepEnergy& energy, double battery_left_j,
                   TimestepRecord& step);
 
 // Of one timestep: all movement, hovering included, and all of its time.
@@ -23,4 +24,4 @@ double DurationS(const TimestepRecord& step);
 // Fills every sum of the mission from its steps.
 void SumSteps(double eta_min, MissionRecord& record);
 
-}  // namespace ed3r
+}  // namespace ed3r::mission

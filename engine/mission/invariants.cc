@@ -11,7 +11,7 @@
 
 #include "engine/robot/flight.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 namespace {
 
 constexpr double kLedgerTolerance = 1e-9;       // relative
@@ -102,7 +102,7 @@ void CheckTime(const MissionRecord& record) {
           fmt::format("the timesteps take {} s, the mission {} s", duration_s, record.duration_s));
 }
 
-void CheckLedger(const MissionRecord& record, const MovementPower& power, double battery_j) {
+void CheckLedger(const MissionRecord& record, const robot::MovementPower& power, double battery_j) {
   double left_j = battery_j;
   for (const TimestepRecord& step : record.steps) {
     for (const auto& [name, energy_j] : EnergiesOf(step))
@@ -138,8 +138,8 @@ void CheckBattery(const MissionRecord& record) {
           fmt::format("mission: {} J are left", record.battery_left_j));
 }
 
-void CheckPositions(const MissionRecord& record, const Scene& scene, double gust_mps) {
-  const double tolerance_m = kPositionToleranceM + kSettleLimitS * gust_mps;
+void CheckPositions(const MissionRecord& record, const world::Scene& scene, double gust_mps) {
+  const double tolerance_m = kPositionToleranceM + robot::kSettleLimitS * gust_mps;
   const auto check = [&](std::int64_t k, double x_m, double y_m, double z_m) {
     const Eigen::Vector3d& size_m = scene.SizeM();
     const double ground_m = scene.Ground().HeightAt(x_m, y_m);
@@ -164,4 +164,4 @@ void CheckProbabilities(const MissionRecord& record) {
               Invariant::kProbabilityInRange, fmt::format("timestep {}: {} is {}", step.k, name, value));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::mission

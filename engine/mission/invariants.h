@@ -12,7 +12,7 @@
 #include "engine/robot/energy.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 
 enum class Invariant {
   kMissionEnds,   // within mission.max_timesteps
@@ -23,16 +23,26 @@ enum class Invariant {
   kPositionInWorld,     // inside the box and not in the ground
   kProbabilityInRange   // scores, shares of the image and exploration rates are in [0, 1]
 };
+
+}  // namespace ed3r::mission
+
+namespace ed3r {
+
 template <>
-struct EnumNames<Invariant> {
-  static constexpr EnumName<Invariant> kNames[] = {{Invariant::kMissionEnds, "mission-ends"},
-                                                   {Invariant::kValuesFinite, "values-finite"},
-                                                   {Invariant::kTimeMonotone, "time-monotone"},
-                                                   {Invariant::kLedgerAddsUp, "ledger-adds-up"},
-                                                   {Invariant::kBatteryNotNegative, "battery-not-negative"},
-                                                   {Invariant::kPositionInWorld, "position-in-world"},
-                                                   {Invariant::kProbabilityInRange, "probability-in-range"}};
+struct EnumNames<mission::Invariant> {
+  static constexpr EnumName<mission::Invariant> kNames[] = {
+      {mission::Invariant::kMissionEnds, "mission-ends"},
+      {mission::Invariant::kValuesFinite, "values-finite"},
+      {mission::Invariant::kTimeMonotone, "time-monotone"},
+      {mission::Invariant::kLedgerAddsUp, "ledger-adds-up"},
+      {mission::Invariant::kBatteryNotNegative, "battery-not-negative"},
+      {mission::Invariant::kPositionInWorld, "position-in-world"},
+      {mission::Invariant::kProbabilityInRange, "probability-in-range"}};
 };
+
+}  // namespace ed3r
+
+namespace ed3r::mission {
 
 // what() is one line that begins with the invariant's name.
 class BrokenInvariant : public InternalError {
@@ -46,9 +56,9 @@ class BrokenInvariant : public InternalError {
 
 // What a record is held against.
 struct MissionLimits {
-  const MovementPower& power;
+  const robot::MovementPower& power;
   double battery_j;  // at the start
-  const Scene& scene;
+  const world::Scene& scene;
   double gust_mps = 0.0;  // the robot may be carried out of the box by what it cannot hold
 };
 
@@ -58,9 +68,9 @@ void CheckInvariants(const MissionRecord& record, const MissionLimits& limits);
 // The parts of it.
 void CheckFinite(const MissionRecord& record);
 void CheckTime(const MissionRecord& record);
-void CheckLedger(const MissionRecord& record, const MovementPower& power, double battery_j);
+void CheckLedger(const MissionRecord& record, const robot::MovementPower& power, double battery_j);
 void CheckBattery(const MissionRecord& record);
-void CheckPositions(const MissionRecord& record, const Scene& scene, double gust_mps);
+void CheckPositions(const MissionRecord& record, const world::Scene& scene, double gust_mps);
 void CheckProbabilities(const MissionRecord& record);
 
-}  // namespace ed3r
+}  // namespace ed3r::mission

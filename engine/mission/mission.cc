@@ -19,23 +19,24 @@
 #include "engine/radio/link.h"
 #include "engine/robot/ledger.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 namespace {
 
-std::unique_ptr<Sensor> SensorOf(const MissionTask& task, const Scenario& scenario) {
-  const SensorScenario seen{scenario.site, task.seed, task.scenario};
+std::unique_ptr<perception::Sensor> SensorOf(const MissionTask& task, const Scenario& scenario) {
+  const perception::SensorScenario seen{scenario.site, task.seed, task.scenario};
   if (task.config.perception.tier == PerceptionTier::kProfile)
-    return MakeProfileSensor(task.scene, task.config, seen);
+    return perception::MakeProfileSensor(task.scene, task.config, seen);
   ED3R_CHECK(task.pixels != nullptr, "the pixel tier needs its detectors");
-  return MakePixelSensor(*task.pixels, task.config, seen);
+  return perception::MakePixelSensor(*task.pixels, task.config, seen);
 }
 
-CandidateTrace* CandidatesAt(const MissionTask& task, std::uint32_t k) {
+agents::CandidateTrace* CandidatesAt(const MissionTask& task, std::uint32_t k) {
   return task.probe != nullptr && task.probe->timestep == k ? &task.probe->candidates : nullptr;
 }
 
-void Probe(const MissionTask& task, std::uint32_t k, const RcView& rc_view, const MotionDecision& motion,
-           const RobotView& robot_view, const ExecutionDecision& execution, RobotAgent& robot) {
+void Probe(const MissionTask& task, std::uint32_t k, const agents::RcView& rc_view,
+           const agents::MotionDecision& motion, const agents::RobotView& robot_view,
+           const agents::ExecutionDecision& execution, agents::RobotAgent& robot) {
   if (task.probe == nullptr || task.probe->timestep != k) return;
   task.probe->reached = true;
   task.probe->rc_view = rc_view;
@@ -49,16 +50,16 @@ void Probe(const MissionTask& task, std::uint32_t k, const RcView& rc_view, cons
 
 MissionRecord FlyMission(const MissionTask& task) {
   Mission mission(task);
-  RemoteController controller(mission.Agents());
-  RobotAgent robot(mission.Agents());
+  agents::RemoteController controller(mission.Agents());
+  agents::RobotAgent robot(mission.Agents());
   while (!mission.Ended()) {
     const std::uint32_t k = mission.Timestep();
     if (task.stop != nullptr && task.stop->load(std::memory_order_relaxed)) throw Interrupted();
     if (k > static_cast<std::uint32_t>(task.config.mission.max_timesteps))
       throw BrokenInvariant(Invariant::kMissionEnds, fmt::format("the mission does not end: timestep {}", k));
 
-    const RcView rc_view = mission.ControllerView();
-    const MotionDecision motion =
+    const agents::RcView rc_view = mission.ControllerView();
+    const agents::MotionDecision motion =
         controller.ChooseMotion(rc_view, k, CandidatesAt(task, k));  // stage 1, at the RC
     if (motion.complete) {
       mission.Complete();
@@ -66,8 +67,8 @@ MissionRecord FlyMission(const MissionTask& task) {
     }
     mission.Execute(motion);
 
-    const RobotView robot_view = mission.OnboardView();
-    const ExecutionDecision execution =
+    const agents::RobotView robot_view = mission.OnboardView();
+    const agents::ExecutionDecision execution =
         robot.ChooseExecution(robot_view, motion.epsilon, k);  // stage 2, on board
     Probe(task, k, rc_view, motion, robot_view, execution, robot);
     mission.Detect(execution);
@@ -80,32 +81,32 @@ Mission::Mission(const MissionTask& task)
       config_(task.config),
       scenario_(DealScenario(task.scene, task.config.mission, task.seed, task.scenario)),
       antenna_m_(task.scene.BaseStations()[static_cast<std::size_t>(scenario_.base_station)].antenna_m),
-      power_(MovementPowerOf(config_.robot, config_.environment, config_.energy)),
+      power_(robot::MovementPowerOf(config_.robot, config_.environment, config_.energy)),
       flight_(task.scene, config_, scenario_.start, task.seed, task.scenario),
       sensor_(SensorOf(task, scenario_)),
       battery_j_(config_.robot.BatteryJ()) {
   flight_.SetTrace(task.trace);
 }
 
-AgentContext Mission::Agents() const {
+agents::AgentContext Mission::Agents() const {
   return {config_,
-          FindStrategy(config_.mission.strategy),
+          agents::FindStrategy(config_.mission.strategy),
           task_.networks,
           task_.scene.SizeM(),
           task_.seed,
           task_.scenario,
-          EpsilonOfMission(config_.agents, task_.mission)};
+          agents::EpsilonOfMission(config_.agents, task_.mission)};
 }
 
-void Mission::Execute(const MotionDecision& motion) {
+void Mission::Execute(const agents::MotionDecision& motion) {
   ED3R_CHECK(!Ended() && stage_ == Stage::kMotion, "a motion in place of a detection");
   motion_ = motion;
   move_ = flight_.Execute(motion.command, k_);
   if (!motion.command.hover) view_begin_ = k_;
   arrival_.conditions = DrawConditions(config_, task_.seed, task_.scenario, k_);
   arrival_.rc_distance_m = (flight_.CurrentPose().position_m - antenna_m_).norm();
-  arrival_.link = EvaluateLink(config_.radio, arrival_.rc_distance_m, arrival_.conditions.bandwidth_hz,
-                               arrival_.conditions.shadowing_db);
+  arrival_.link = radio::EvaluateLink(config_.radio, arrival_.rc_distance_m, arrival_.conditions.bandwidth_hz,
+                                      arrival_.conditions.shadowing_db);
   stage_ = Stage::kExecution;
 }
 
@@ -114,14 +115,14 @@ void Mission::Complete() {
   outcome_ = OutcomeOfCompletion();
 }
 
-void Mission::Detect(const ExecutionDecision& execution) {
+void Mission::Detect(const agents::ExecutionDecision& execution) {
   ED3R_CHECK(!Ended() && stage_ == Stage::kExecution, "a detection in place of a motion");
   last_ = OpenStep(k_, motion_, move_, execution);
   RecordLink(arrival_.conditions, arrival_.rc_distance_m, arrival_.link, last_);
   Sense(execution.execution);
-  const StepTime time = TimeOf(execution.execution);
-  const StepEnergy energy = Charge(power_, time, DevicesOf(execution.execution));
-  last_.reward = Reward(config_.agents, energy.TotalJ(), last_.scs, battery_j_);
+  const robot::StepTime time = TimeOf(execution.execution);
+  const robot::StepEnergy energy = robot::Charge(power_, time, DevicesOf(execution.execution));
+  last_.reward = agents::Reward(config_.agents, energy.TotalJ(), last_.scs, battery_j_);
   if (energy.TotalJ() > battery_j_) {  // Eq. 14; R8
     RecordLedger(time, energy, battery_j_, last_);
     outcome_ = Outcome::kBatteryDepleted;
@@ -135,8 +136,8 @@ void Mission::Detect(const ExecutionDecision& execution) {
   stage_ = Stage::kMotion;
 }
 
-RcView Mission::ControllerView() const {
-  RcView view;
+agents::RcView Mission::ControllerView() const {
+  agents::RcView view;
   view.pose = flight_.CurrentPose();
   view.rc_distance_m = (view.pose.position_m - antenna_m_).norm();
   if (!steps_.empty()) {
@@ -146,10 +147,10 @@ RcView Mission::ControllerView() const {
   return view;
 }
 
-RobotView Mission::OnboardView() const {
+agents::RobotView Mission::OnboardView() const {
   ED3R_CHECK(!Ended() && stage_ == Stage::kExecution, "the robot has not arrived");
-  const RcView before = ControllerView();
-  RobotView view;
+  const agents::RcView before = ControllerView();
+  agents::RobotView view;
   view.yaw_rad = before.pose.yaw_rad;
   view.tilt_rad = before.pose.tilt_rad;
   view.battery_ratio = battery_j_ / config_.robot.BatteryJ();                  // Eq. 19
@@ -159,16 +160,17 @@ RobotView Mission::OnboardView() const {
   view.rate_bps = arrival_.link.rate_bps;
   view.previous_scs = before.previous_scs;
   view.previous_energy_j = before.previous_energy_j;
-  view.rate_ratio = arrival_.link.rate_bps / LargestRateBps(config_.radio);
+  view.rate_ratio = arrival_.link.rate_bps / radio::LargestRateBps(config_.radio);
   return view;
 }
 
-void Mission::Sense(Execution execution) {
+void Mission::Sense(agents::Execution execution) {
   // The RC runs the Full model only.
-  const DetectionModel model =
-      execution == Execution::kQuantized ? DetectionModel::kQuantized : DetectionModel::kFull;
+  const perception::DetectionModel model = execution == agents::Execution::kQuantized
+                                               ? perception::DetectionModel::kQuantized
+                                               : perception::DetectionModel::kFull;
   const InPhase perceiving(Phase::kPerception);
-  const Detection seen = sensor_->Sense(flight_.CurrentPose(), model, k_, view_begin_);
+  const perception::Detection seen = sensor_->Sense(flight_.CurrentPose(), model, k_, view_begin_);
   last_.confidence_mean = seen.score.mean;
   last_.confidence_sd = seen.score.standard_deviation;
   last_.scs = seen.score.scs;
@@ -178,31 +180,32 @@ void Mission::Sense(Execution execution) {
   last_.fire_in_view = seen.fire_in_view ? 1 : 0;
 }
 
-ComputationCost Mission::OnboardCost(Execution execution) const {
-  if (execution == Execution::kOffload) return {};
-  const double gflop = execution == Execution::kFull ? config_.cpu.full_gflop : config_.cpu.quantized_gflop;
-  return Computation(config_.cpu, config_.sensing, gflop, arrival_.conditions.cpu_hz);
+robot::ComputationCost Mission::OnboardCost(agents::Execution execution) const {
+  if (execution == agents::Execution::kOffload) return {};
+  const double gflop =
+      execution == agents::Execution::kFull ? config_.cpu.full_gflop : config_.cpu.quantized_gflop;
+  return robot::Computation(config_.cpu, config_.sensing, gflop, arrival_.conditions.cpu_hz);
 }
 
-StepTime Mission::TimeOf(Execution execution) const {
-  StepTime time;
+robot::StepTime Mission::TimeOf(agents::Execution execution) const {
+  robot::StepTime time;
   time.horizontal_s = move_.horizontal_s;
   time.ascent_s = move_.ascent_s;
   time.descent_s = move_.descent_s;
   time.turning_s = move_.hovering_s;
   time.sensing_s = config_.sensing.period_s;
   time.computing_s = OnboardCost(execution).time_s;
-  if (execution == Execution::kOffload)
-    time.transmitting_s = TransmissionTimeS(PayloadByte(config_.sensing), arrival_.link);
+  if (execution == agents::Execution::kOffload)
+    time.transmitting_s = radio::TransmissionTimeS(robot::PayloadByte(config_.sensing), arrival_.link);
   return time;
 }
 
-DeviceEnergy Mission::DevicesOf(Execution execution) const {
-  DeviceEnergy devices;
-  devices.sensing_j = SensingEnergyJ(config_.sensing);
+robot::DeviceEnergy Mission::DevicesOf(agents::Execution execution) const {
+  robot::DeviceEnergy devices;
+  devices.sensing_j = robot::SensingEnergyJ(config_.sensing);
   devices.computation_j = OnboardCost(execution).energy_j;
-  if (execution == Execution::kOffload)
-    devices.transmission_j = TransmissionEnergyJ(PayloadByte(config_.sensing), arrival_.link);
+  if (execution == agents::Execution::kOffload)
+    devices.transmission_j = radio::TransmissionEnergyJ(robot::PayloadByte(config_.sensing), arrival_.link);
   return devices;
 }
 
@@ -243,4 +246,4 @@ MissionRecord Mission::Record() {
   return record;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::mission

@@ -27,39 +27,39 @@
 #include "engine/robot/ledger.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 
 // What both agents saw and thought in one timestep, for `ed3r explain`.
 struct DecisionProbe {
   std::uint32_t timestep = 0;  // which one is asked for
   bool reached = false;        // the mission got that far
-  RcView rc_view;
-  MotionDecision motion;
-  CandidateTrace candidates;  // empty where the choice was not greedy
-  RobotView robot_view;
-  ExecutionDecision execution;
+  agents::RcView rc_view;
+  agents::MotionDecision motion;
+  agents::CandidateTrace candidates;  // empty where the choice was not greedy
+  agents::RobotView robot_view;
+  agents::ExecutionDecision execution;
   std::array<double, 3> robot_rewards{};  // predicted, by Execution; NaN without a network
 };
 
 struct MissionTask {
-  const Scene& scene;
+  const world::Scene& scene;
   const Config& config;
-  const PixelTier* pixels = nullptr;  // where perception.tier is pixels
+  const perception::PixelTier* pixels = nullptr;  // where perception.tier is pixels
   std::uint64_t seed = 0;
   std::uint32_t scenario = 0;
   int mission = 0;                          // its number within its arm, for the decay of epsilon (R20)
-  Networks networks = {};                   // where the strategy asks any
+  agents::Networks networks = {};           // where the strategy asks any
   int network_seed = -1;                    // which of the arm's training seeds these are, for the record
   const std::atomic<bool>* stop = nullptr;  // checked between timesteps; set: Interrupted is thrown
   DecisionProbe* probe = nullptr;
-  TraceSink* trace = nullptr;  // receives the flown path; for replays
+  robot::TraceSink* trace = nullptr;  // receives the flown path; for replays
 };
 
 // What stage 2 needs to know once the robot has arrived.
 struct Arrival {
   Conditions conditions;
   double rc_distance_m = 0.0;
-  Link link;
+  radio::Link link;
 };
 
 // A mission that is flown timestep by timestep, two stages each:
@@ -73,18 +73,18 @@ class Mission {
  public:
   explicit Mission(const MissionTask& task);
 
-  AgentContext Agents() const;                   // what its agents are made from
+  agents::AgentContext Agents() const;           // what its agents are made from
   std::uint32_t Timestep() const { return k_; }  // the one that is decided next, or goes on
   bool Ended() const { return outcome_.has_value(); }
   std::optional<Outcome> Result() const { return outcome_; }  // none until it has ended
 
-  RcView ControllerView() const;
-  void Execute(const MotionDecision& motion);  // flies it: Bullet, LiDAR veto
-  void Complete();                             // in place of Execute: the RC ends the mission
+  agents::RcView ControllerView() const;
+  void Execute(const agents::MotionDecision& motion);  // flies it: Bullet, LiDAR veto
+  void Complete();                                     // in place of Execute: the RC ends the mission
 
-  RobotView OnboardView() const;
-  void Detect(
-      const ExecutionDecision& execution);  // senses, detects, bills; ends it where the battery cannot pay
+  agents::RobotView OnboardView() const;
+  void Detect(const agents::ExecutionDecision&
+                  execution);  // senses, detects, bills; ends it where the battery cannot pay
 
   // What the timestep that Detect ended came to. One that the battery could not pay is not part of the record.
   const TimestepRecord& LastStep() const { return last_; }
@@ -95,19 +95,19 @@ class Mission {
  private:
   enum class Stage { kMotion, kExecution };
 
-  void Sense(Execution execution);
-  StepTime TimeOf(Execution execution) const;
-  DeviceEnergy DevicesOf(Execution execution) const;
-  ComputationCost OnboardCost(Execution execution) const;
+  void Sense(agents::Execution execution);
+  robot::StepTime TimeOf(agents::Execution execution) const;
+  robot::DeviceEnergy DevicesOf(agents::Execution execution) const;
+  robot::ComputationCost OnboardCost(agents::Execution execution) const;
   Outcome OutcomeOfCompletion() const;
 
   const MissionTask task_;
   const Config& config_;
   const Scenario scenario_;
   const Eigen::Vector3d antenna_m_;
-  const MovementPower power_;
-  Flight flight_;
-  const std::unique_ptr<Sensor> sensor_;
+  const robot::MovementPower power_;
+  robot::Flight flight_;
+  const std::unique_ptr<perception::Sensor> sensor_;
   double battery_j_;  // beta_k
   double distance_m_ = 0.0;
   std::vector<TimestepRecord> steps_;
@@ -117,8 +117,8 @@ class Mission {
   std::uint32_t k_ = 1;
   Stage stage_ = Stage::kMotion;
   std::uint32_t view_begin_ = 1;  // the timestep in which the robot came to where it is
-  MotionDecision motion_;
-  FlownMove move_;
+  agents::MotionDecision motion_;
+  robot::FlownMove move_;
   Arrival arrival_;
   TimestepRecord last_;
 };
@@ -128,4 +128,4 @@ class Mission {
 // Threads: tasks may share scene and config.
 MissionRecord FlyMission(const MissionTask& task);
 
-}  // namespace ed3r
+}  // namespace ed3r::mission

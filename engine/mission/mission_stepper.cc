@@ -2,7 +2,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 
 MissionStepper::MissionStepper(const MissionTask& task)
     : mission_(task), controller_(mission_.Agents()), max_timesteps_(task.config.mission.max_timesteps) {
@@ -20,14 +20,14 @@ void MissionStepper::Observe() {
   if (order_.complete) mission_.Complete();
 }
 
-void MissionStepper::Move(const MotionCommand& command) {
+void MissionStepper::Move(const robot::MotionCommand& command) {
   mission_.Execute(controller_.Take(rc_view_, command));
   robot_view_ = mission_.OnboardView();
 }
 
-void MissionStepper::Detect(Execution execution) {
-  mission_.Detect({.execution = execution, .by = DecidedBy::kStrategy});
+void MissionStepper::Detect(agents::Execution execution) {
+  mission_.Detect({.execution = execution, .by = agents::DecidedBy::kStrategy});
   if (!Ended()) Observe();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::mission

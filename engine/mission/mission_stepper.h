@@ -16,7 +16,7 @@
 #include "engine/agents/remote_controller.h"
 #include "engine/mission/mission.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 
 class MissionStepper {
  public:
@@ -30,15 +30,15 @@ class MissionStepper {
   bool AtLimit() const;
 
   // Stage 1. What the RC sees (S_RC,k) and what the Algorithm orders. After the end: as of the last timestep.
-  const RcView& ControllerSees() const { return rc_view_; }
-  const CompletionOrder& Order() const { return order_; }
+  const agents::RcView& ControllerSees() const { return rc_view_; }
+  const agents::CompletionOrder& Order() const { return order_; }
   std::uint32_t Timestep() const { return mission_.Timestep(); }
   // Throws UserError for a command that is not finite; the mission is then as before.
-  void Move(const MotionCommand& command);
+  void Move(const robot::MotionCommand& command);
 
   // Stage 2, once it has moved.
-  const RobotView& RobotSees() const { return robot_view_; }
-  void Detect(Execution execution);
+  const agents::RobotView& RobotSees() const { return robot_view_; }
+  void Detect(agents::Execution execution);
 
   const TimestepRecord& LastStep() const { return mission_.LastStep(); }
 
@@ -49,11 +49,11 @@ class MissionStepper {
   void Observe();
 
   Mission mission_;
-  RemoteController controller_;
+  agents::RemoteController controller_;
   std::int64_t max_timesteps_;
-  RcView rc_view_;
-  CompletionOrder order_;
-  RobotView robot_view_;
+  agents::RcView rc_view_;
+  agents::CompletionOrder order_;
+  agents::RobotView robot_view_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::mission

@@ -11,15 +11,25 @@
 #include "engine/agents/decisions.h"
 #include "engine/config/field.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 
 enum class Outcome : std::int64_t { kSuccess = 0, kFalsePositive = 1, kBatteryDepleted = 2 };
+
+}  // namespace ed3r::mission
+
+namespace ed3r {
+
 template <>
-struct EnumNames<Outcome> {
-  static constexpr EnumName<Outcome> kNames[] = {{Outcome::kSuccess, "success"},
-                                                 {Outcome::kFalsePositive, "false-positive"},
-                                                 {Outcome::kBatteryDepleted, "battery-depleted"}};
+struct EnumNames<mission::Outcome> {
+  static constexpr EnumName<mission::Outcome> kNames[] = {
+      {mission::Outcome::kSuccess, "success"},
+      {mission::Outcome::kFalsePositive, "false-positive"},
+      {mission::Outcome::kBatteryDepleted, "battery-depleted"}};
 };
+
+}  // namespace ed3r
+
+namespace ed3r::mission {
 
 struct TimestepRecord {
   std::int64_t k = 0;  // 1, 2, ...
@@ -133,4 +143,4 @@ void MissionRecord::Describe(Self& s, Visitor&& visit) {
       visit("start_rc_distance_m", s.start_rc_distance_m);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::mission

@@ -6,7 +6,7 @@
 #include "engine/agents/features.h"
 #include "engine/agents/reward.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 namespace {
 
 // State and action side by side, as the networks see them.
@@ -19,22 +19,22 @@ auto RowOf(const State& state, const Action& action) {
   return row;
 }
 
-MotionCommand CommandOf(const TimestepRecord& step) {
+robot::MotionCommand CommandOf(const TimestepRecord& step) {
   return {.displacement_m = {step.command_dx_m, step.command_dy_m, step.command_dz_m},
           .turn_rad = step.command_turn_rad,
           .tilt_rad = step.command_tilt_rad};
 }
 
-RcView StartView(const MissionRecord& record) {
-  RcView view;
+agents::RcView StartView(const MissionRecord& record) {
+  agents::RcView view;
   view.pose = {{record.start_x_m, record.start_y_m, record.start_z_m}, record.start_yaw_rad, 0.0};
   view.rc_distance_m = record.start_rc_distance_m;
   return view;
 }
 
 // The RC's view of the next timestep.
-RcView ViewAfter(const TimestepRecord& step) {
-  RcView view;
+agents::RcView ViewAfter(const TimestepRecord& step) {
+  agents::RcView view;
   view.pose = {{step.x_m, step.y_m, step.z_m}, step.yaw_rad, step.tilt_rad};
   view.rc_distance_m = step.rc_distance_m;
   view.previous_scs = step.scs;
@@ -42,9 +42,9 @@ RcView ViewAfter(const TimestepRecord& step) {
   return view;
 }
 
-RobotView OnboardView(const TimestepRecord& step, const RcView& before, double battery_j,
-                      const Config& flown) {
-  RobotView view;
+agents::RobotView OnboardView(const TimestepRecord& step, const agents::RcView& before, double battery_j,
+                              const Config& flown) {
+  agents::RobotView view;
   view.yaw_rad = step.yaw_rad;
   view.tilt_rad = step.tilt_rad;
   view.battery_ratio = battery_j / flown.robot.BatteryJ();
@@ -60,18 +60,18 @@ RobotView OnboardView(const TimestepRecord& step, const RcView& before, double b
 }  // namespace
 
 void AppendSamples(const MissionRecord& record, std::int64_t mission_id, const Config& flown,
-                   const AgentsConfig& agents, DataSet& rc, DataSet& robot) {
-  RcView before = StartView(record);
+                   const AgentsConfig& agents, rfnn::DataSet& rc, rfnn::DataSet& robot) {
+  agents::RcView before = StartView(record);
   double battery_j = flown.robot.BatteryJ();
   for (const TimestepRecord& step : record.steps) {
-    const auto target = static_cast<float>(Reward(agents, step.total_j, step.scs, battery_j));
-    rc.Add(RowOf(StateOf(before), ActionOf(CommandOf(step))), target, mission_id);
-    robot.Add(RowOf(StateOf(OnboardView(step, before, battery_j, flown)),
-                    ActionOf(static_cast<Execution>(step.execution))),
+    const auto target = static_cast<float>(agents::Reward(agents, step.total_j, step.scs, battery_j));
+    rc.Add(RowOf(agents::StateOf(before), agents::ActionOf(CommandOf(step))), target, mission_id);
+    robot.Add(RowOf(agents::StateOf(OnboardView(step, before, battery_j, flown)),
+                    agents::ActionOf(static_cast<agents::Execution>(step.execution))),
               target, mission_id);
     before = ViewAfter(step);
     battery_j = step.battery_j;
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::mission

@@ -9,7 +9,7 @@
 #include "engine/core/check.h"
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 namespace {
 
 template <class Place>
@@ -26,7 +26,7 @@ std::vector<int> InPlay(const std::vector<Place>& places, SiteSet set, const cha
 
 }  // namespace
 
-Scenario DealScenario(const Scene& scene, const MissionConfig& mission, std::uint64_t seed,
+Scenario DealScenario(const world::Scene& scene, const MissionConfig& mission, std::uint64_t seed,
                       std::uint32_t number) {
   const auto sites = InPlay(scene.Sites(), mission.sites, "mission.sites", scene.Name());
   const auto stations =
@@ -37,7 +37,7 @@ Scenario DealScenario(const Scene& scene, const MissionConfig& mission, std::uin
   scenario.base_station = stations[number / sites.size() % stations.size()];
 
   Stream stream(seed, number, Purpose::kScenario);
-  const StartArea& area = scene.Start();
+  const world::StartArea& area = scene.Start();
   const double radius_m = area.radius_m * std::sqrt(stream.Uniform());
   const double angle_rad = stream.Uniform(0.0, 2.0 * std::numbers::pi);
   const double x_m = area.x_m + radius_m * std::cos(angle_rad);
@@ -50,7 +50,7 @@ Scenario DealScenario(const Scene& scene, const MissionConfig& mission, std::uin
   return scenario;
 }
 
-int PlacesInPlay(const Scene& scene, const MissionConfig& mission) {
+int PlacesInPlay(const world::Scene& scene, const MissionConfig& mission) {
   return static_cast<int>(
       InPlay(scene.Sites(), mission.sites, "mission.sites", scene.Name()).size() *
       InPlay(scene.BaseStations(), mission.base_stations, "mission.base_stations", scene.Name()).size());
@@ -68,4 +68,4 @@ Conditions DrawConditions(const Config& config, std::uint64_t seed, std::uint32_
   return conditions;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::mission

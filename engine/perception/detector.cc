@@ -6,7 +6,7 @@
 
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 Score DetectFromProfile(const View& view, const PerceptionConfig& perception, DetectionModel model,
                         int frames, const LookDraws& draws) {
@@ -25,4 +25,4 @@ Score DetectFromProfile(const View& view, const PerceptionConfig& perception, De
   return StableConfidence(confidences, perception.frame_threshold);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

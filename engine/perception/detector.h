@@ -9,7 +9,7 @@
 #include "engine/perception/sensor.h"
 #include "engine/perception/view.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // Keys of a look's draws: both models meet the same fluctuation, so that arms differ by the model alone.
 struct LookDraws {
@@ -22,4 +22,4 @@ struct LookDraws {
 Score DetectFromProfile(const View& view, const PerceptionConfig& perception, DetectionModel model,
                         int frames, const LookDraws& draws);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

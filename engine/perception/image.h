@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // The frames of one sensing period, frame after frame; rows top to bottom, pixels left to right, red, green and
 // blue interleaved, 8 bits each, display-encoded: frames * height_px * width_px * 3 bytes.
@@ -15,4 +15,4 @@ struct FrameStack {
   std::vector<std::uint8_t> rgb;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

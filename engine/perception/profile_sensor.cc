@@ -2,18 +2,18 @@
 #include "engine/perception/sensor.h"
 #include "engine/perception/view.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 class ProfileSensor : public Sensor {
  public:
-  ProfileSensor(const Scene& scene, const Config& config, const SensorScenario& scenario)
+  ProfileSensor(const world::Scene& scene, const Config& config, const SensorScenario& scenario)
       : config_(config),
         scenario_(scenario),
         fire_(scene, scenario.site),
         distractors_(DrawDistractors(scene, config.perception, scenario.seed, scenario.number)) {}
 
-  Detection Sense(const Pose& pose, DetectionModel model, std::uint32_t timestep,
+  Detection Sense(const robot::Pose& pose, DetectionModel model, std::uint32_t timestep,
                   std::uint32_t view_begin) const override {
     const View view = fire_.Look(pose, config_.sensing, config_.perception, distractors_);
     View without_distractors = view;
@@ -41,9 +41,9 @@ class ProfileSensor : public Sensor {
 
 }  // namespace
 
-std::unique_ptr<Sensor> MakeProfileSensor(const Scene& scene, const Config& config,
+std::unique_ptr<Sensor> MakeProfileSensor(const world::Scene& scene, const Config& config,
                                           const SensorScenario& scenario) {
   return std::make_unique<ProfileSensor>(scene, config, scenario);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ed3r {
+namespace ed3r::perception {
 
 Score StableConfidence(std::span<const double> confidences, double frame_threshold) {
   Score score;
@@ -26,4 +26,4 @@ Score StableConfidence(std::span<const double> confidences, double frame_thresho
   return score;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -3,7 +3,7 @@
 
 #include <span>
 
-namespace ed3r {
+namespace ed3r::perception {
 
 struct Score {
   double mean = 0.0;                // of the frame confidences
@@ -14,4 +14,4 @@ struct Score {
 // Confidences in [0, 1], one per frame; those below frame_threshold count as 0 (R33). No frames: all zero.
 Score StableConfidence(std::span<const double> confidences, double frame_threshold);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

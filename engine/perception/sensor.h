@@ -9,7 +9,7 @@
 #include "engine/robot/motion.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 enum class DetectionModel { kFull, kQuantized };
 
@@ -28,7 +28,7 @@ class Sensor {
  public:
   virtual ~Sensor() = default;
   // `view`: the timestep in which the robot came to this pose; later ones hover over the same view.
-  virtual Detection Sense(const Pose& pose, DetectionModel model, std::uint32_t timestep,
+  virtual Detection Sense(const robot::Pose& pose, DetectionModel model, std::uint32_t timestep,
                           std::uint32_t view) const = 0;
 };
 
@@ -40,7 +40,7 @@ struct SensorScenario {
 };
 
 // Confidences from geometry (perception.tier profile). Scene and config must outlive the sensor.
-std::unique_ptr<Sensor> MakeProfileSensor(const Scene& scene, const Config& config,
+std::unique_ptr<Sensor> MakeProfileSensor(const world::Scene& scene, const Config& config,
                                           const SensorScenario& scenario);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -9,7 +9,7 @@
 #include "engine/core/random.h"
 #include "engine/world/plume.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr int kFlameSamples = 32;
@@ -34,7 +34,7 @@ double Misleading(const Eigen::Vector3d& ray, const PerceptionConfig& perception
 
 }  // namespace
 
-std::vector<Distractor> DrawDistractors(const Scene& scene, const PerceptionConfig& perception,
+std::vector<Distractor> DrawDistractors(const world::Scene& scene, const PerceptionConfig& perception,
                                         std::uint64_t seed, std::uint32_t scenario) {
   Stream stream(seed, scenario, Purpose::kDistractors);
   const Eigen::Vector3d& size_m = scene.SizeM();
@@ -54,7 +54,7 @@ std::vector<Distractor> DrawDistractors(const Scene& scene, const PerceptionConf
   return distractors;
 }
 
-Camera::Camera(const Pose& pose, const SensingConfig& sensing) : position_m_(pose.position_m) {
+Camera::Camera(const robot::Pose& pose, const SensingConfig& sensing) : position_m_(pose.position_m) {
   const double cos_yaw = std::cos(pose.yaw_rad), sin_yaw = std::sin(pose.yaw_rad);
   const double cos_tilt = std::cos(pose.tilt_rad), sin_tilt = std::sin(pose.tilt_rad);
   forward_ = {cos_yaw * cos_tilt, sin_yaw * cos_tilt, -sin_tilt};
@@ -77,18 +77,18 @@ double Camera::ShareOf(const Eigen::Vector3d& point_m, double area_m2) const {
   return image_area / (4.0 * half_width_ * half_height_);
 }
 
-FireView::FireView(const Scene& scene, int site) : scene_(scene) {
+FireView::FireView(const world::Scene& scene, int site) : scene_(scene) {
   ED3R_CHECK(site >= 0 && site < static_cast<int>(scene.Sites().size()), "site index");
-  const FireShape& fire = scene.Fire();
+  const world::FireShape& fire = scene.Fire();
   const Eigen::Vector3d base_m = scene.Sites()[static_cast<std::size_t>(site)].base_m;
   const double flame_side_m2 = fire.flame_radius_m * fire.flame_height_m;
   const double flame_top_m2 = std::numbers::pi * fire.flame_radius_m * fire.flame_radius_m;
-  for (const Eigen::Vector3d& point : FlamePoints(fire, base_m, kFlameSamples))
+  for (const Eigen::Vector3d& point : world::FlamePoints(fire, base_m, kFlameSamples))
     flame_.push_back({point, flame_side_m2 / kFlameSamples, flame_top_m2 / kFlameSamples});
   const double smoke_height_m = fire.total_height_m - fire.flame_height_m;
-  const double smoke_side_m2 = (SmokeBottomRadiusM(fire) + fire.smoke_top_radius_m) * smoke_height_m;
+  const double smoke_side_m2 = (world::SmokeBottomRadiusM(fire) + fire.smoke_top_radius_m) * smoke_height_m;
   const double smoke_top_m2 = std::numbers::pi * fire.smoke_top_radius_m * fire.smoke_top_radius_m;
-  for (const Eigen::Vector3d& point : SmokePoints(fire, base_m, kSmokeSamples))
+  for (const Eigen::Vector3d& point : world::SmokePoints(fire, base_m, kSmokeSamples))
     smoke_.push_back({point, smoke_side_m2 / kSmokeSamples, smoke_top_m2 / kSmokeSamples});
 }
 
@@ -105,7 +105,7 @@ double FireView::VisibleShare(const Camera& camera, const std::vector<Sample>& s
   return std::min(share, 1.0);
 }
 
-View FireView::Look(const Pose& pose, const SensingConfig& sensing, const PerceptionConfig& perception,
+View FireView::Look(const robot::Pose& pose, const SensingConfig& sensing, const PerceptionConfig& perception,
                     const std::vector<Distractor>& distractors) const {
   const Camera camera(pose, sensing);
   View view;
@@ -127,4 +127,4 @@ View FireView::Look(const Pose& pose, const SensingConfig& sensing, const Percep
   return view;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

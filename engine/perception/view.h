@@ -13,7 +13,7 @@
 #include "engine/robot/motion.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // A harmless thing that a detector can take for fire (R34): a disc on the ground.
 struct Distractor {
@@ -22,7 +22,7 @@ struct Distractor {
 };
 
 // Drawn per mission, the same for all arms that fly the scenario.
-std::vector<Distractor> DrawDistractors(const Scene& scene, const PerceptionConfig& perception,
+std::vector<Distractor> DrawDistractors(const world::Scene& scene, const PerceptionConfig& perception,
                                         std::uint64_t seed, std::uint32_t scenario);
 
 struct View {
@@ -36,7 +36,7 @@ struct View {
 // Pinhole camera: x right, y down, z forward; image coordinates are x/z and y/z.
 class Camera {
  public:
-  Camera(const Pose& pose, const SensingConfig& sensing);
+  Camera(const robot::Pose& pose, const SensingConfig& sensing);
 
   // Share of the image that a patch of the given area covers, turned fully towards the camera; 0 outside the frame.
   double ShareOf(const Eigen::Vector3d& point_m, double area_m2) const;
@@ -55,9 +55,9 @@ class Camera {
 // The fire at one site, as seen by any number of cameras. Threads: const members may be called from any thread.
 class FireView {
  public:
-  FireView(const Scene& scene, int site);
+  FireView(const world::Scene& scene, int site);
 
-  View Look(const Pose& pose, const SensingConfig& sensing, const PerceptionConfig& perception,
+  View Look(const robot::Pose& pose, const SensingConfig& sensing, const PerceptionConfig& perception,
             const std::vector<Distractor>& distractors) const;
 
  private:
@@ -69,8 +69,8 @@ class FireView {
   double VisibleShare(const Camera& camera, const std::vector<Sample>& samples, double haze_range_m,
                       int& visible) const;
 
-  const Scene& scene_;
+  const world::Scene& scene_;
   std::vector<Sample> flame_, smoke_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

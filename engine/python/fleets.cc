@@ -11,19 +11,19 @@
 #include "engine/core/suggest.h"
 #include "engine/schedule/sweep_runner.h"
 
-namespace ed3r {
+namespace ed3r::python {
 namespace {
 
 constexpr std::size_t kMostRows = 1'000'000;
 
 // The plan of the one arm alone, in a stage of its own that waits for nothing, with its decisions from outside.
-SweepPlan PlanOfArm(SweepPlan plan, const std::string& name) {
+sweep::SweepPlan PlanOfArm(sweep::SweepPlan plan, const std::string& name) {
   std::vector<std::string> names;
-  std::optional<Stage> found;
+  std::optional<sweep::Stage> found;
   int matches = 0;
-  for (const Stage& stage : plan.stages) {
-    if (stage.kind != StageKind::kFly) continue;
-    for (const Arm& arm : stage.arms) {
+  for (const sweep::Stage& stage : plan.stages) {
+    if (stage.kind != sweep::StageKind::kFly) continue;
+    for (const sweep::Arm& arm : stage.arms) {
       names.push_back(arm.name);
       if (!name.empty() && name != arm.name && name != stage.name + "/" + arm.name) continue;
       ++matches;
@@ -40,15 +40,15 @@ SweepPlan PlanOfArm(SweepPlan plan, const std::string& name) {
                                 fmt::join(names, " | "),
                                 nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest)));
   }
-  found->arms.front().config.mission.strategy = kOutsideStrategy;
+  found->arms.front().config.mission.strategy = agents::kOutsideStrategy;
   plan.stages = {std::move(*found)};
   return plan;
 }
 
-Autoreset AutoresetNamed(const std::string& name) {
-  constexpr std::array kNames = {std::pair{"next_step", Autoreset::kNextStep},
-                                 std::pair{"same_step", Autoreset::kSameStep},
-                                 std::pair{"disabled", Autoreset::kDisabled}};
+schedule::Autoreset AutoresetNamed(const std::string& name) {
+  constexpr std::array kNames = {std::pair{"next_step", schedule::Autoreset::kNextStep},
+                                 std::pair{"same_step", schedule::Autoreset::kSameStep},
+                                 std::pair{"disabled", schedule::Autoreset::kDisabled}};
   for (const auto& [known, mode] : kNames)
     if (name == known) return mode;
   throw UserError(
@@ -74,20 +74,20 @@ std::shared_ptr<FleetHandle> MakeFleet(const SweepRequest& request, const std::s
                                        int threads, const std::string& autoreset) {
   if (rows < 1 || rows > kMostRows)
     throw UserError(fmt::format("num_envs: {} is not allowed; allowed: 1 .. {}", rows, kMostRows));
-  const Autoreset mode = AutoresetNamed(autoreset);
+  const schedule::Autoreset mode = AutoresetNamed(autoreset);
   auto handle = std::make_shared<FleetHandle>();
-  handle->plan = std::make_shared<SweepPlan>(PlanOfArm(LoadRequest(request), arm));
-  handle->inputs = std::make_shared<const Inputs>(*handle->plan);
-  const Arm& flown = handle->plan->stages.front().arms.front();
+  handle->plan = std::make_shared<sweep::SweepPlan>(PlanOfArm(LoadRequest(request), arm));
+  handle->inputs = std::make_shared<const schedule::Inputs>(*handle->plan);
+  const sweep::Arm& flown = handle->plan->stages.front().arms.front();
   handle->arm = flown.name;
   handle->config = flown.config;
   const auto task = [plan = handle->plan, inputs = handle->inputs, rows](std::size_t row, std::int64_t nth) {
-    const RunId id{0, 0,
-                   static_cast<int>(static_cast<std::int64_t>(row) + nth * static_cast<std::int64_t>(rows))};
-    return std::optional(TaskOf(*plan, *inputs, nullptr, id));
+    const sweep::RunId id{
+        0, 0, static_cast<int>(static_cast<std::int64_t>(row) + nth * static_cast<std::int64_t>(rows))};
+    return std::optional(schedule::TaskOf(*plan, *inputs, nullptr, id));
   };
-  handle->fleet = std::make_shared<Fleet>(rows, task, threads, mode);
+  handle->fleet = std::make_shared<schedule::Fleet>(rows, task, threads, mode);
   return handle;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::python

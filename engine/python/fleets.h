@@ -13,14 +13,14 @@
 #include "engine/schedule/fleet.h"
 #include "engine/schedule/inputs.h"
 
-namespace ed3r {
+namespace ed3r::python {
 
 struct FleetHandle {
   std::string arm;
   Config config;
-  std::shared_ptr<SweepPlan> plan;       // none where the fleet belongs to a sweep that is being flown
-  std::shared_ptr<const Inputs> inputs;  // likewise
-  std::shared_ptr<Fleet> fleet;          // last: it refers to the others
+  std::shared_ptr<sweep::SweepPlan> plan;  // none where the fleet belongs to a sweep that is being flown
+  std::shared_ptr<const schedule::Inputs> inputs;  // likewise
+  std::shared_ptr<schedule::Fleet> fleet;          // last: it refers to the others
   const std::atomic<bool>* stop = nullptr;
 
   // Begins the next missions, or with a seed the first ones of that seed; only the rows of `mask` where it marks any.
@@ -35,4 +35,4 @@ struct FleetHandle {
 std::shared_ptr<FleetHandle> MakeFleet(const SweepRequest& request, const std::string& arm, std::size_t rows,
                                        int threads, const std::string& autoreset);
 
-}  // namespace ed3r
+}  // namespace ed3r::python

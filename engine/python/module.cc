@@ -25,7 +25,7 @@
 
 namespace py = pybind11;
 
-namespace ed3r {
+namespace ed3r::python {
 namespace {
 
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
@@ -45,10 +45,10 @@ py::array View(const std::vector<Value>& values, py::ssize_t width, const char* 
   return array;
 }
 
-py::dict Views(const FleetColumns& c, const py::handle& owner) {
+py::dict Views(const schedule::FleetColumns& c, const py::handle& owner) {
   py::dict views;
-  views["controller"] = View(c.controller, kRcStates, "f4", owner);
-  views["robot"] = View(c.robot, kRobotStates, "f4", owner);
+  views["controller"] = View(c.controller, rfnn::kRcStates, "f4", owner);
+  views["robot"] = View(c.robot, rfnn::kRobotStates, "f4", owner);
   views["ranges"] = View(c.ranges, 3, "f4", owner);
   const auto add = [&](const char* name, const auto& values, const char* type) {
     views[name] = View(values, 0, type, owner);
@@ -85,7 +85,7 @@ void BindFleet(py::module_& module) {
       .def(
           "views",
           [](const py::object& self, bool final) {
-            const Fleet& fleet = *self.cast<const FleetHandle&>().fleet;
+            const schedule::Fleet& fleet = *self.cast<const FleetHandle&>().fleet;
             return Views(final ? fleet.Final() : fleet.Now(), self);
           },
           py::arg("final") = false)
@@ -100,7 +100,7 @@ void BindFleet(py::module_& module) {
           py::arg("mask") = py::none(), py::arg("seed") = py::none())
       .def("move",
            [](FleetHandle& h, const Floats& commands) {
-             const auto values = Values(commands, h.fleet->rows(), kCommandValues, "commands");
+             const auto values = Values(commands, h.fleet->rows(), schedule::kCommandValues, "commands");
              const py::gil_scoped_release release;
              h.fleet->Move(values);
            })
@@ -149,8 +149,8 @@ void BindResults(py::module_& module) {
   module.def("code_names", &CodeNames);
 }
 
-OnnxTensor Tensor(const Floats& array) {
-  OnnxTensor tensor;
+rfnn::OnnxTensor Tensor(const Floats& array) {
+  rfnn::OnnxTensor tensor;
   for (py::ssize_t axis = 0; axis < array.ndim(); ++axis) tensor.dims.push_back(array.shape(axis));
   tensor.values.assign(array.data(), array.data() + array.size());
   return tensor;
@@ -160,7 +160,7 @@ void BindNetworks(py::module_& module) {
   module.def("network_bytes",
              [](const std::string& name, const std::string& agent, const std::vector<Floats>& weights,
                 const std::vector<Floats>& biases, std::vector<float> mean, std::vector<float> inverse_sd) {
-               DenseChain chain{std::move(mean), std::move(inverse_sd), {}, {}};
+               rfnn::DenseChain chain{std::move(mean), std::move(inverse_sd), {}, {}};
                for (const Floats& layer : weights) chain.weights.push_back(Tensor(layer));
                for (const Floats& layer : biases) chain.biases.push_back(Tensor(layer));
                return py::bytes(NetworkBytes(chain, name, agent));
@@ -187,18 +187,18 @@ void BindSweeps(py::module_& module) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::python
 
 PYBIND11_MODULE(_core, module) {
   module.doc() = "The engine behind the package ed3r.";
   py::register_exception<ed3r::UserError>(module, "UserError", PyExc_ValueError);
   py::register_exception<ed3r::InternalError>(module, "InternalError", PyExc_RuntimeError);
-  ed3r::BindNetworks(module);
-  ed3r::BindSweeps(module);
-  ed3r::BindFleet(module);
-  ed3r::BindResults(module);
-  module.attr("controller_features") = py::cast(
-      std::vector<std::string>(ed3r::kRcFeatures.begin(), ed3r::kRcFeatures.begin() + ed3r::kRcStates));
+  ed3r::python::BindNetworks(module);
+  ed3r::python::BindSweeps(module);
+  ed3r::python::BindFleet(module);
+  ed3r::python::BindResults(module);
+  module.attr("controller_features") = py::cast(std::vector<std::string>(
+      ed3r::rfnn::kRcFeatures.begin(), ed3r::rfnn::kRcFeatures.begin() + ed3r::rfnn::kRcStates));
   module.attr("robot_features") = py::cast(std::vector<std::string>(
-      ed3r::kRobotFeatures.begin(), ed3r::kRobotFeatures.begin() + ed3r::kRobotStates));
+      ed3r::rfnn::kRobotFeatures.begin(), ed3r::rfnn::kRobotFeatures.begin() + ed3r::rfnn::kRobotStates));
 }

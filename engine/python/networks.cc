@@ -4,13 +4,13 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::python {
 
-std::string NetworkBytes(const DenseChain& chain, const std::string& name, const std::string& agent) {
-  for (const NetworkDesign* design : {&kRcNetwork, &kRobotNetwork})
-    if (agent == design->name) return OnnxBytes(chain, name, *design);
-  throw UserError(fmt::format("agent: '{}' is not allowed; allowed: {} | {}", agent, kRcNetwork.name,
-                              kRobotNetwork.name));
+std::string NetworkBytes(const rfnn::DenseChain& chain, const std::string& name, const std::string& agent) {
+  for (const rfnn::NetworkDesign* design : {&rfnn::kRcNetwork, &rfnn::kRobotNetwork})
+    if (agent == design->name) return rfnn::OnnxBytes(chain, name, *design);
+  throw UserError(fmt::format("agent: '{}' is not allowed; allowed: {} | {}", agent, rfnn::kRcNetwork.name,
+                              rfnn::kRobotNetwork.name));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::python

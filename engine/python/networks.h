@@ -5,9 +5,9 @@
 
 #include "engine/rfnn/onnx_network.h"
 
-namespace ed3r {
+namespace ed3r::python {
 
 // agent: rc | robot. Throws UserError that begins with `name` for what no sweep would take.
-std::string NetworkBytes(const DenseChain& chain, const std::string& name, const std::string& agent);
+std::string NetworkBytes(const rfnn::DenseChain& chain, const std::string& name, const std::string& agent);
 
-}  // namespace ed3r
+}  // namespace ed3r::python

@@ -12,13 +12,13 @@
 #include "studies/report/load.h"
 #include "studies/report/report.h"
 
-namespace ed3r {
+namespace ed3r::python {
 namespace {
 
 template <class Record>
 std::vector<ResultColumn> EmptyTable() {
   std::vector<ResultColumn> table = {{.name = "arm"}, {.name = "mission"}};
-  for (const Column& column : ColumnsOf<Record>())
+  for (const store::Column& column : store::ColumnsOf<Record>())
     table.push_back({.name = column.name, .is_real = column.is_real});
   return table;
 }
@@ -40,16 +40,16 @@ void AddRow(std::int64_t arm, std::int64_t mission, const Record& record, std::v
 
 std::vector<ArmCount> RunReader::Arms() {
   std::vector<ArmCount> arms;
-  for (const ArmStatus& arm : reader_.Status())
+  for (const store::ArmStatus& arm : reader_.Status())
     arms.push_back({arm.stage, arm.arm, arm.planned, arm.done, arm.failed});
   return arms;
 }
 
 // (stage, arm) of what was asked for; RunId::mission is the arm's place in Arms().
-std::vector<RunId> RunReader::Selected(const std::string& arm) const {
-  std::vector<RunId> selected;
+std::vector<sweep::RunId> RunReader::Selected(const std::string& arm) const {
+  std::vector<sweep::RunId> selected;
   std::vector<std::string> names;
-  const RunLayout& layout = reader_.Layout();
+  const store::RunLayout& layout = reader_.Layout();
   int place = 0;
   for (std::size_t s = 0; s < layout.stages.size(); ++s)
     for (std::size_t a = 0; a < layout.stages[s].arms.size(); ++a) {
@@ -69,34 +69,36 @@ std::vector<RunId> RunReader::Selected(const std::string& arm) const {
 }
 
 std::vector<ResultColumn> RunReader::Missions(const std::string& arm) {
-  std::vector<ResultColumn> table = EmptyTable<MissionRecord>();
-  for (const RunId& id : Selected(arm))
-    reader_.ForEachMission(id.stage, id.arm, Steps::kSkip, [&](const StoredMission& mission) {
+  std::vector<ResultColumn> table = EmptyTable<mission::MissionRecord>();
+  for (const sweep::RunId& id : Selected(arm))
+    reader_.ForEachMission(id.stage, id.arm, store::Steps::kSkip, [&](const store::StoredMission& mission) {
       AddRow(id.mission, mission.id.mission, mission.record, table);
     });
   return table;
 }
 
 std::vector<ResultColumn> RunReader::Timesteps(const std::string& arm) {
-  std::vector<ResultColumn> table = EmptyTable<TimestepRecord>();
-  for (const RunId& id : Selected(arm))
-    reader_.ForEachTimestep(id.stage, id.arm, [&](int mission, const TimestepRecord& step) {
+  std::vector<ResultColumn> table = EmptyTable<mission::TimestepRecord>();
+  for (const sweep::RunId& id : Selected(arm))
+    reader_.ForEachTimestep(id.stage, id.arm, [&](int mission, const mission::TimestepRecord& step) {
       AddRow(id.mission, mission, step, table);
     });
   return table;
 }
 
 std::string RunReader::ReportText() {
-  return ReportJson(MakeReport(LoadRun(reader_.dir()), ReadDepartures(reader_))).dump();
+  return report::ReportJson(
+             report::MakeReport(report::LoadRun(reader_.dir()), report::ReadDepartures(reader_)))
+      .dump();
 }
 
-std::string RunReader::Digest() { return DigestOf(reader_); }
+std::string RunReader::Digest() { return store::DigestOf(reader_); }
 
 std::map<std::string, std::map<std::int64_t, std::string>> CodeNames() {
   std::map<std::string, std::map<std::int64_t, std::string>> names;
   for (const std::string column : {"outcome", "execution", "motion_rule"})
-    for (const auto& [code, word] : WordsOf(column)) names[column][code] = std::string(word);
+    for (const auto& [code, word] : store::WordsOf(column)) names[column][code] = std::string(word);
   return names;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::python

@@ -8,7 +8,7 @@
 
 #include "engine/store/reader.h"
 
-namespace ed3r {
+namespace ed3r::python {
 
 // One column of a table: integers or reals.
 struct ResultColumn {
@@ -40,12 +40,12 @@ class RunReader {
   std::string Digest();
 
  private:
-  std::vector<RunId> Selected(const std::string& arm) const;
+  std::vector<sweep::RunId> Selected(const std::string& arm) const;
 
-  ResultReader reader_;
+  store::ResultReader reader_;
 };
 
 // What the codes of stored columns stand for: {"outcome": {0: "success", ...}, ...}.
 std::map<std::string, std::map<std::int64_t, std::string>> CodeNames();
 
-}  // namespace ed3r
+}  // namespace ed3r::python

@@ -15,7 +15,7 @@
 #include "studies/metrics/definitions.h"
 #include "studies/report/load.h"
 
-namespace ed3r {
+namespace ed3r::python {
 namespace {
 
 std::map<std::string, std::string> NotesOf(const SweepRequest& request, const FlightPlace& place) {
@@ -27,9 +27,10 @@ std::map<std::string, std::string> NotesOf(const SweepRequest& request, const Fl
 }
 
 // Missions of `todo`, row by row, as a fleet; each that has ended is offered.
-std::shared_ptr<FleetHandle> FleetOf(const SweepPlan& plan, const Inputs& inputs, const Arm& arm,
-                                     const std::vector<RunId>& todo, const FlightPlace& place,
-                                     const OfferFn& offer, const std::atomic<bool>& stop) {
+std::shared_ptr<FleetHandle> FleetOf(const sweep::SweepPlan& plan, const schedule::Inputs& inputs,
+                                     const sweep::Arm& arm, const std::vector<sweep::RunId>& todo,
+                                     const FlightPlace& place, const schedule::OfferFn& offer,
+                                     const std::atomic<bool>& stop) {
   const std::size_t rows = std::min(place.rows, todo.size());
   auto handle = std::make_shared<FleetHandle>();
   handle->arm = arm.name;
@@ -37,51 +38,52 @@ std::shared_ptr<FleetHandle> FleetOf(const SweepPlan& plan, const Inputs& inputs
   handle->stop = &stop;
   const auto task = [&plan, &inputs, &todo, rows](std::size_t row, std::int64_t nth) {
     const std::size_t at = row + static_cast<std::size_t>(nth) * rows;
-    return at < todo.size() ? std::optional(TaskOf(plan, inputs, nullptr, todo[at])) : std::nullopt;
+    return at < todo.size() ? std::optional(schedule::TaskOf(plan, inputs, nullptr, todo[at])) : std::nullopt;
   };
-  handle->fleet = std::make_shared<Fleet>(rows, task, place.threads, Autoreset::kSameStep);
-  handle->fleet->OnRecord(
-      [&offer, id = todo.front()](const MissionTask& flown, std::optional<MissionRecord> record) {
-        const bool ended = record.has_value();
-        Failure failure;
-        if (!ended) failure = {std::string(NameOf(Invariant::kMissionEnds)), "the mission does not end"};
-        offer({id.stage, id.arm, flown.mission}, std::move(record), std::move(failure));
-      });
+  handle->fleet =
+      std::make_shared<schedule::Fleet>(rows, task, place.threads, schedule::Autoreset::kSameStep);
+  handle->fleet->OnRecord([&offer, id = todo.front()](const mission::MissionTask& flown,
+                                                      std::optional<mission::MissionRecord> record) {
+    const bool ended = record.has_value();
+    store::Failure failure;
+    if (!ended) failure = {std::string(NameOf(mission::Invariant::kMissionEnds)), "the mission does not end"};
+    offer({id.stage, id.arm, flown.mission}, std::move(record), std::move(failure));
+  });
   return handle;
 }
 
 }  // namespace
 
-SweepPlan LoadRequest(const SweepRequest& request) {
-  SweepOverrides overrides;
+sweep::SweepPlan LoadRequest(const SweepRequest& request) {
+  sweep::SweepOverrides overrides;
   overrides.set = request.settings;
   overrides.seed = request.seed;
   if (request.missions) {
     if (*request.missions < 1)
-      throw UserError(
-          fmt::format("missions: {} is not allowed; allowed: 1 .. {}", *request.missions, kMaxMissions));
+      throw UserError(fmt::format("missions: {} is not allowed; allowed: 1 .. {}", *request.missions,
+                                  sweep::kMaxMissions));
     overrides.missions.push_back({"", *request.missions});
   }
-  return LoadSweep(request.file, overrides, [](const std::string& key, const std::string& value) {
-    if (key == "precision.metric") return CheckMetricName(value);
-    return key == "mission.strategy" ? CheckStrategyName(value) : std::string();
+  return sweep::LoadSweep(request.file, overrides, [](const std::string& key, const std::string& value) {
+    if (key == "precision.metric") return metrics::CheckMetricName(value);
+    return key == "mission.strategy" ? agents::CheckStrategyName(value) : std::string();
   });
 }
 
 FlightCount FlyWithPolicy(const SweepRequest& request, const FlightPlace& place, const DriveFn& drive) {
   if (place.rows < 1) throw UserError("num_envs: 0 is not allowed; allowed: 1 or more");
-  const SweepPlan plan = LoadRequest(request);
-  const Inputs inputs(plan);
-  SweepOptions options;
+  const sweep::SweepPlan plan = LoadRequest(request);
+  const schedule::Inputs inputs(plan);
+  schedule::SweepOptions options;
   options.dir = place.out;
   options.cache_dir = place.cache;
   options.schedule.threads = place.threads;
   options.schedule.quiet = true;
-  options.half_width = HalfWidth;
+  options.half_width = report::HalfWidth;
   options.notes = NotesOf(request, place);
   options.outside_identity = place.policy_identity;
-  options.outside = [&](const Arm& arm, const std::vector<RunId>& todo, const OfferFn& offer,
-                        const std::atomic<bool>& stop) {
+  options.outside = [&](const sweep::Arm& arm, const std::vector<sweep::RunId>& todo,
+                        const schedule::OfferFn& offer, const std::atomic<bool>& stop) {
     const std::shared_ptr<FleetHandle> fleet = FleetOf(plan, inputs, arm, todo, place, offer, stop);
     // Python may hold the fleet's arrays for longer than the plan lives.
     struct Retire {
@@ -91,8 +93,8 @@ FlightCount FlyWithPolicy(const SweepRequest& request, const FlightPlace& place,
     fleet->fleet->Reset();
     drive(fleet);
   };
-  const SweepSummary summary = RunSweep(plan, inputs, options);
+  const schedule::SweepSummary summary = schedule::RunSweep(plan, inputs, options);
   return {summary.flown.stored, summary.flown.failed};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::python

@@ -10,7 +10,7 @@
 
 #include "engine/sweep/plan.h"
 
-namespace ed3r {
+namespace ed3r::python {
 
 struct FleetHandle;
 
@@ -22,7 +22,7 @@ struct SweepRequest {
 };
 
 // Throws UserError as 'ed3r run' does.
-SweepPlan LoadRequest(const SweepRequest& request);
+sweep::SweepPlan LoadRequest(const SweepRequest& request);
 
 struct FlightPlace {
   std::string out;              // run directory
@@ -44,4 +44,4 @@ using DriveFn = std::function<void(const std::shared_ptr<FleetHandle>& fleet)>;
 // external that has missions to fly. Throws UserError, and what `drive` throws; what was flown is kept.
 FlightCount FlyWithPolicy(const SweepRequest& request, const FlightPlace& place, const DriveFn& drive);
 
-}  // namespace ed3r
+}  // namespace ed3r::python

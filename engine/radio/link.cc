@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ed3r {
+namespace ed3r::radio {
 namespace {
 
 constexpr double kLightSpeedMps = 299792458.0;
@@ -42,4 +42,4 @@ double TransmissionEnergyJ(double payload_byte, const Link& link) {
   return link.transmit_power_w * TransmissionTimeS(payload_byte, link);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::radio

@@ -3,7 +3,7 @@
 
 #include "engine/config/environment.h"
 
-namespace ed3r {
+namespace ed3r::radio {
 
 struct Link {
   double path_loss_db = 0.0;  // L_0 + 10 e log10(delta / delta_0), without shadowing
@@ -26,4 +26,4 @@ double LargestRateBps(const RadioConfig& radio);
 double TransmissionTimeS(double payload_byte, const Link& link);
 double TransmissionEnergyJ(double payload_byte, const Link& link);
 
-}  // namespace ed3r
+}  // namespace ed3r::radio

@@ -3,7 +3,7 @@
 #include "engine/core/sealed_file.h"
 #include "engine/rfnn/curve_bytes.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 constexpr SealedFormat kFormat = {"ED3RTRCP", 1, "training checkpoint"};
@@ -42,4 +42,4 @@ Checkpoint ReadCheckpoint(const std::string& path, const std::string& key, std::
   return checkpoint;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -7,7 +7,7 @@
 
 #include "engine/rfnn/training_report.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 // Of kernels' DenseTrainer; flat (kernels/dense_net.h).
 struct TrainerState {
@@ -32,4 +32,4 @@ void WriteCheckpoint(const std::string& path, const Checkpoint& checkpoint);
 // training anew, with the same result.
 Checkpoint ReadCheckpoint(const std::string& path, const std::string& key, std::size_t parameters);
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

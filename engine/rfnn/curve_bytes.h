@@ -6,7 +6,7 @@
 #include "engine/core/sealed_file.h"
 #include "engine/rfnn/training_report.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 inline void PutCurve(const std::vector<EpochLoss>& curve, ByteWriter& out) {
   std::vector<double> values;
@@ -22,4 +22,4 @@ inline std::vector<EpochLoss> TakeCurve(ByteReader& in) {
   return curve;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -9,7 +9,7 @@
 #include "engine/core/sha256.h"
 #include "engine/rfnn/training_draws.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 constexpr double kValidationShare = 0.10;
@@ -65,4 +65,4 @@ Split MakeSplit(std::span<const std::int64_t> missions, std::uint64_t seed) {
   return split;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 // One row per timestep of the warm-up: raw inputs, the reward that followed, and the mission it belongs to.
 // Fill it mission by mission in the order of the plan, never in the order of completion: the order of rows is
@@ -42,4 +42,4 @@ struct Split {
 // missions there are. Throws UserError for fewer than 3 missions.
 Split MakeSplit(std::span<const std::int64_t> missions, std::uint64_t seed);
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -7,7 +7,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 DirectNetwork::DirectNetwork(std::vector<Model> values) : values_(std::move(values)) {
   ED3R_CHECK(!values_.empty(), "a network without values");
@@ -26,4 +26,4 @@ void DirectNetwork::Decide(std::span<const double> state, std::span<double> deci
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

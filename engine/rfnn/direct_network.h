@@ -11,7 +11,7 @@
 
 #include "engine/rfnn/model.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 class DirectNetwork {
  public:
@@ -28,4 +28,4 @@ class DirectNetwork {
   std::vector<Model> values_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

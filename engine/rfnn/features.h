@@ -9,7 +9,7 @@
 #include <span>
 #include <string_view>
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 // Columns of the RC's rows (S_RC,k | A_RC,k). "Previous" values are 0 at k = 1.
 enum RcFeature {
@@ -84,4 +84,4 @@ inline constexpr NetworkDesign kRcNetwork = {"rc", kRcFeatures, kRcStates, kRcHi
 inline constexpr NetworkDesign kRobotNetwork = {"robot", kRobotFeatures, kRobotStates, kRobotHidden,
                                                 kRobotActions.size()};
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -7,7 +7,7 @@
 #include "engine/core/check.h"
 #include "kernels/rfnn.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 template <class Floats>
@@ -18,11 +18,11 @@ float* Reserve(Floats& floats, std::size_t size) {
 
 }  // namespace
 
-DenseShape ShapeOf(const NetworkDesign& design) {
+kernels::DenseShape ShapeOf(const NetworkDesign& design) {
   std::vector<int> sizes = {design.inputs()};
   sizes.insert(sizes.end(), design.hidden.begin(), design.hidden.end());
   sizes.push_back(1);
-  return MakeDenseShape(sizes.data(), static_cast<int>(sizes.size()));
+  return kernels::MakeDenseShape(sizes.data(), static_cast<int>(sizes.size()));
 }
 
 Model::Model(const NetworkDesign& design, ModelData data)
@@ -30,12 +30,13 @@ Model::Model(const NetworkDesign& design, ModelData data)
       data_(std::move(data)),
       shape_(ShapeOf(design)),
       scaler_(data_.scaling),
-      packed_(PackedFloats(shape_)) {
+      packed_(kernels::PackedFloats(shape_)) {
   const auto inputs = static_cast<std::size_t>(design.inputs());
-  ED3R_CHECK(data_.weights.size() == ParameterCount(shape_), fmt::format("{} weights", data_.weights.size()));
+  ED3R_CHECK(data_.weights.size() == kernels::ParameterCount(shape_),
+             fmt::format("{} weights", data_.weights.size()));
   ED3R_CHECK(data_.scaling.input_mean.size() == inputs && data_.scaling.input_sd.size() == inputs, "scaling");
   ED3R_CHECK(data_.scaling.target_sd > 0.0, "scaling of the target");
-  PackParameters(shape_, data_.weights.data(), packed_.data());
+  kernels::PackParameters(shape_, data_.weights.data(), packed_.data());
 }
 
 BestAction Model::Ask(std::span<const double> state, std::span<const float> actions, float* values,
@@ -51,13 +52,13 @@ BestAction Model::Ask(std::span<const double> state, std::span<const float> acti
   float* a = Reserve(workspace.actions_, actions.size());
   for (std::size_t at = 0; at < actions.size(); at += n_action)
     scaler_.Standardize(actions.subspan(at, n_action), design_.states, a + at);
-  const RfnnDecision decision{.state = x,
-                              .n_state = design_.states,
-                              .actions = a,
-                              .n = static_cast<int>(actions.size() / n_action),
-                              .values = values};
-  const RfnnBest best =
-      RfnnArgmax(net(), decision, Reserve(workspace.kernel_, RfnnWorkspaceFloats(shape_)), workspace.level_);
+  const kernels::RfnnDecision decision{.state = x,
+                                       .n_state = design_.states,
+                                       .actions = a,
+                                       .n = static_cast<int>(actions.size() / n_action),
+                                       .values = values};
+  const kernels::RfnnBest best = kernels::RfnnArgmax(
+      net(), decision, Reserve(workspace.kernel_, kernels::RfnnWorkspaceFloats(shape_)), workspace.level_);
   ED3R_CHECK(std::isfinite(best.value),
              fmt::format("network '{}' predicts {} for its best action", design_.name, best.value));
   return {best.index, RawTarget(data_.scaling, best.value)};
@@ -91,9 +92,9 @@ void Model::PredictRows(std::span<const float> rows, std::span<double> rewards, 
   for (std::size_t at = 0; at < rows.size(); at += inputs)
     scaler_.Standardize(rows.subspan(at, inputs), 0, x + at);
   float* values = Reserve(workspace.values_, rewards.size());
-  RfnnValues(net(), x, static_cast<int>(rewards.size()), values,
-             Reserve(workspace.kernel_, RfnnWorkspaceFloats(shape_)), workspace.level_);
+  kernels::RfnnValues(net(), x, static_cast<int>(rewards.size()), values,
+                      Reserve(workspace.kernel_, kernels::RfnnWorkspaceFloats(shape_)), workspace.level_);
   for (std::size_t r = 0; r < rewards.size(); ++r) rewards[r] = RawTarget(data_.scaling, values[r]);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -21,7 +21,7 @@
 #include "kernels/dense_net.h"
 #include "kernels/simd_level.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 // Where a network comes from: data hash, seed, every training parameter, code version, and what the caller
 // adds. One-line texts.
@@ -42,19 +42,19 @@ struct BestAction {
 };
 
 // The kernel's shape of a design: inputs, hidden layers, one output.
-DenseShape ShapeOf(const NetworkDesign& design);
+kernels::DenseShape ShapeOf(const NetworkDesign& design);
 
 class Model {
  public:
   // Scratch memory of one thread, for any number of models. Grows to what the largest question needs.
   class Workspace {
    public:
-    explicit Workspace(SimdLevel level = ActiveSimdLevel()) : level_(level) {}
+    explicit Workspace(kernels::SimdLevel level = kernels::ActiveSimdLevel()) : level_(level) {}
 
    private:
     friend class Model;
-    SimdLevel level_;
-    AlignedFloats kernel_;
+    kernels::SimdLevel level_;
+    kernels::AlignedFloats kernel_;
     std::vector<float> state_, actions_, values_;
   };
 
@@ -79,15 +79,15 @@ class Model {
   const ModelData& data() const { return data_; }
 
  private:
-  DenseNet net() const { return {shape_, packed_.data()}; }
+  kernels::DenseNet net() const { return {shape_, packed_.data()}; }
   BestAction Ask(std::span<const double> state, std::span<const float> actions, float* values,
                  Workspace& workspace) const;
 
   NetworkDesign design_;
   ModelData data_;
-  DenseShape shape_;
+  kernels::DenseShape shape_;
   InputScaler scaler_;
-  AlignedFloats packed_;
+  kernels::AlignedFloats packed_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -10,7 +10,7 @@
 #include "engine/core/sha256.h"
 #include "engine/rfnn/curve_bytes.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 constexpr SealedFormat kFormat = {"ED3RRFNN", 2, "model file"};
@@ -77,9 +77,9 @@ bool AllFinite(const Values& values) {
 void CheckUsable(const ModelData& data, const NetworkDesign& design, const ByteReader& in) {
   const auto inputs = static_cast<std::size_t>(design.inputs());
   const Scaling& scaling = data.scaling;
-  if (data.weights.size() != ParameterCount(ShapeOf(design)))
+  if (data.weights.size() != kernels::ParameterCount(ShapeOf(design)))
     in.Refuse(fmt::format("holds {} weights; a {} network has {}", data.weights.size(), design.name,
-                          ParameterCount(ShapeOf(design))));
+                          kernels::ParameterCount(ShapeOf(design))));
   if (scaling.input_mean.size() != inputs || scaling.input_sd.size() != inputs)
     in.Refuse(fmt::format("holds scales of {} inputs; a {} network has {}", scaling.input_mean.size(),
                           design.name, inputs));
@@ -156,4 +156,4 @@ std::string NetworkHash(const Model& model) {
   return sha.Hex();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -7,7 +7,7 @@
 
 #include "engine/rfnn/model.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 // Atomic: see sealed_file.h. Throws UserError where the disk refuses.
 void WriteModel(const std::string& path, const Model& model);
@@ -27,4 +27,4 @@ Model OpenModel(std::string_view bytes, const std::string& name, const NetworkDe
 // provenance do not count.
 std::string NetworkHash(const Model& model);
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

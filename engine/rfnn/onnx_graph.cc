@@ -9,7 +9,7 @@
 #include "engine/core/check.h"
 #include "engine/core/protobuf.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "tensors are little-endian");
@@ -210,4 +210,4 @@ std::string OnnxGraphBytes(const OnnxGraph& graph, int features, const std::stri
   return model.bytes();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 struct OnnxTensor {
   std::vector<std::int64_t> dims;
@@ -40,4 +40,4 @@ OnnxGraph ParseOnnxGraph(std::string_view bytes, const std::string& name);
 std::string OnnxGraphBytes(const OnnxGraph& graph, int features, const std::string& graph_name,
                            int outputs = 1);
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -12,7 +12,7 @@
 #include "engine/core/file.h"
 #include "engine/core/sha256.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 constexpr char kScalingKey[] = "ed3r.scaling";
@@ -47,8 +47,8 @@ class Chain {
     if (!Decides() && layers_.back().outputs != 1)
       Refuse(fmt::format("gives {} values; allowed: one, the score of an action", layers_.back().outputs));
     if (layers_.back().has_relu) Refuse("has a Relu behind its last layer");
-    if (layers_.size() > kMaxDenseLayers)
-      Refuse(fmt::format("has {} dense layers; allowed: 1 .. {}", layers_.size(), kMaxDenseLayers));
+    if (layers_.size() > kernels::kMaxDenseLayers)
+      Refuse(fmt::format("has {} dense layers; allowed: 1 .. {}", layers_.size(), kernels::kMaxDenseLayers));
   }
 
   std::vector<int> Hidden() const {
@@ -381,7 +381,7 @@ class ChainWriter {
 
 std::string OnnxBytes(const Model& model) {
   const Scaling& scaling = model.data().scaling;
-  const DenseShape shape = ShapeOf(model.design());
+  const kernels::DenseShape shape = ShapeOf(model.design());
   ChainWriter writer(model.design(), "state_and_action", "reward");
   writer.graph().metadata[kScalingKey] = ScalingText(scaling);
   std::vector<float> inverse(scaling.input_sd.size());
@@ -428,4 +428,4 @@ std::string OnnxBytes(const DenseChain& chain, const std::string& name, const Ne
   return bytes;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -26,7 +26,7 @@
 #include "engine/rfnn/model.h"
 #include "engine/rfnn/onnx_graph.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 class OnnxNetwork {
  public:
@@ -67,4 +67,4 @@ struct DenseChain {
 // The chain as an ONNX file of this form. Throws UserError, as Parse, for one that Parse would refuse.
 std::string OnnxBytes(const DenseChain& chain, const std::string& name, const NetworkDesign& design);
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -4,7 +4,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 struct Moments {
@@ -59,4 +59,4 @@ void InputScaler::Standardize(std::span<const float> from, int first, float* to)
     to[i] = static_cast<float>((static_cast<double>(from[i]) - mean[i]) * inverse[i]);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -7,7 +7,7 @@
 
 #include "engine/rfnn/data_set.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 struct Scaling {
   std::vector<double> input_mean;
@@ -40,4 +40,4 @@ inline double RawTarget(const Scaling& scaling, float standardised) {
   return scaling.target_mean + scaling.target_sd * static_cast<double>(standardised);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

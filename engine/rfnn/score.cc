@@ -7,7 +7,7 @@
 #include "engine/core/check.h"
 #include "engine/rfnn/training_draws.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 // The inputs of the rows, one after the other.
@@ -19,7 +19,7 @@ std::vector<float> Gather(const DataSet& data, std::span<const std::uint32_t> ro
 }
 
 std::vector<double> Predictions(const Model& model, std::span<const float> inputs, std::size_t rows,
-                                SimdLevel level) {
+                                kernels::SimdLevel level) {
   Model::Workspace workspace(level);
   std::vector<double> predicted(rows);
   model.PredictRows(inputs, predicted, workspace);
@@ -60,7 +60,7 @@ int CountMissions(const DataSet& data, std::span<const std::uint32_t> rows) {
 }  // namespace
 
 FitScore Score(const Model& model, const DataSet& data, std::span<const std::uint32_t> rows,
-               SimdLevel level) {
+               kernels::SimdLevel level) {
   ED3R_CHECK(!rows.empty(), "no rows");
   const Errors errors = ErrorsOf(data, rows, Predictions(model, Gather(data, rows), rows.size(), level));
   const auto n = static_cast<double>(rows.size());
@@ -76,7 +76,7 @@ FitScore Score(const Model& model, const DataSet& data, std::span<const std::uin
 
 std::vector<double> PermutationImportance(const Model& model, const DataSet& data,
                                           std::span<const std::uint32_t> rows, std::uint64_t seed,
-                                          SimdLevel level) {
+                                          kernels::SimdLevel level) {
   ED3R_CHECK(!rows.empty(), "no rows");
   const std::vector<float> inputs = Gather(data, rows);
   const auto columns = static_cast<std::size_t>(data.columns);
@@ -93,4 +93,4 @@ std::vector<double> PermutationImportance(const Model& model, const DataSet& dat
   return importance;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

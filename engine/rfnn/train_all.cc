@@ -12,7 +12,7 @@
 #include "engine/core/phase.h"
 #include "engine/rfnn/model_file.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 std::string CachePath(const std::string& cache, const TrainJob& job, const std::string& key) {
@@ -50,7 +50,7 @@ std::vector<std::size_t> Order(std::span<const TrainJob> jobs, std::span<const s
   for (std::size_t i = 0; i < jobs.size(); ++i)
     if (first_equal[i] == i) order.push_back(i);
   const auto work = [&](std::size_t i) {
-    return jobs[i].data->rows() * ParameterCount(ShapeOf(jobs[i].design));
+    return jobs[i].data->rows() * kernels::ParameterCount(ShapeOf(jobs[i].design));
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return work(a) > work(b); });
@@ -108,4 +108,4 @@ std::vector<std::shared_ptr<const Model>> TrainAll(std::span<const TrainJob> job
   return models;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -10,13 +10,13 @@
 
 #include "engine/rfnn/trainer.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 struct TrainAllOptions {
   std::string cache;  // folder of networks and checkpoints; made when missing; "" keeps nothing
   int threads = 1;    // trainings at a time, each on one thread
   const std::atomic<bool>* stop = nullptr;
-  SimdLevel level = ActiveSimdLevel();
+  kernels::SimdLevel level = kernels::ActiveSimdLevel();
   // Called by one thread at a time; also for epochs of a job that stands in the list more than once.
   std::function<void(std::size_t job, int epoch, const EpochLoss& loss)> on_epoch;
   // Likewise, when a network is there, trained or read.
@@ -38,4 +38,4 @@ std::vector<std::shared_ptr<const Model>> TrainAll(std::span<const TrainJob> job
 // Where the cache keeps a network: "<cache>/<design>-<32 digits of the key>.rfnn".
 std::string CachePath(const std::string& cache, const TrainJob& job);
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -16,7 +16,7 @@
 #include "engine/rfnn/training_draws.h"
 #include "kernels/train.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 // The parameters that shape one network, as provenance; neither the number of networks is among
@@ -42,10 +42,10 @@ Provenance ProvenanceOf(const TrainJob& job) {
 }
 
 // He et al. 2015 for layers of ReLU: uniform in +- sqrt(6 / inputs), biases zero.
-std::vector<float> InitialWeights(const DenseShape& shape, std::uint64_t seed) {
+std::vector<float> InitialWeights(const kernels::DenseShape& shape, std::uint64_t seed) {
   Stream stream = TrainingStream(seed, TrainingDraw::kWeights);
   std::vector<float> weights;
-  weights.reserve(ParameterCount(shape));
+  weights.reserve(kernels::ParameterCount(shape));
   for (int l = 0; l < shape.layers; ++l) {
     const double limit = std::sqrt(6.0 / shape.sizes[l]);
     for (int i = 0; i < shape.sizes[l] * shape.sizes[l + 1]; ++i)
@@ -55,7 +55,7 @@ std::vector<float> InitialWeights(const DenseShape& shape, std::uint64_t seed) {
   return weights;
 }
 
-TrainOptions OptionsOf(const TrainJob& job, const TrainControl& control, std::size_t rows) {
+kernels::TrainOptions OptionsOf(const TrainJob& job, const TrainControl& control, std::size_t rows) {
   Stream stream = TrainingStream(job.seed, TrainingDraw::kDropout);
   const std::uint64_t high = stream.Bits();
   return {.learning_rate = job.config.learning_rate,
@@ -111,12 +111,12 @@ class Training {
  private:
   const TrainJob& job_;
   const TrainControl& control_;
-  DenseShape shape_;
+  kernels::DenseShape shape_;
   Split split_;
   Scaling scaling_;
   Part train_, validation_;
   std::vector<float> best_weights_;
-  DenseTrainer trainer_;
+  kernels::DenseTrainer trainer_;
   std::vector<EpochLoss> curve_;
   double best_validation_ = std::numeric_limits<double>::infinity();
   int best_epoch_ = 0;
@@ -153,13 +153,13 @@ void Training::Save(const std::string& key) const {
   TrainerState& state = checkpoint.trainer;
   state.steps = trainer_.steps();
   for (auto* floats : {&state.parameters, &state.first_moments, &state.second_moments})
-    floats->resize(ParameterCount(shape_));
+    floats->resize(kernels::ParameterCount(shape_));
   trainer_.Save(state.parameters.data(), state.first_moments.data(), state.second_moments.data());
   WriteCheckpoint(control_.checkpoint, checkpoint);
 }
 
 void Training::Continue(const std::string& key) {
-  Checkpoint checkpoint = ReadCheckpoint(control_.checkpoint, key, ParameterCount(shape_));
+  Checkpoint checkpoint = ReadCheckpoint(control_.checkpoint, key, kernels::ParameterCount(shape_));
   const TrainerState& state = checkpoint.trainer;
   trainer_.Restore(state.parameters.data(), state.first_moments.data(), state.second_moments.data(),
                    state.steps);
@@ -218,4 +218,4 @@ std::optional<Model> Train(const TrainJob& job, const TrainControl& control) {
   return training.Finish();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -20,7 +20,7 @@
 #include "engine/rfnn/model.h"
 #include "kernels/simd_level.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 // What to train. `data` must outlive the training.
 struct TrainJob {
@@ -38,7 +38,7 @@ struct TrainControl {
   std::string checkpoint;                   // file to continue from and to leave when stopped; "" for none
   int checkpoint_epochs = 100;              // also written every so many epochs, for power cuts and kills
   int threads = 1;
-  SimdLevel level = ActiveSimdLevel();
+  kernels::SimdLevel level = kernels::ActiveSimdLevel();
   std::function<void(int epoch, const EpochLoss& loss)> on_epoch;
 };
 
@@ -51,4 +51,4 @@ std::string TrainingKey(const TrainJob& job);
 // checkpoint that is damaged or not of this job.
 std::optional<Model> Train(const TrainJob& job, const TrainControl& control = {});
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -7,7 +7,7 @@
 
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 enum class TrainingDraw : std::uint32_t {
   kSplit = 1,
@@ -29,4 +29,4 @@ void Shuffle(std::vector<T>& values, Stream stream) {
     std::swap(values[i - 1], values[stream.Below(static_cast<std::uint32_t>(i))]);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 nlohmann::ordered_json ScoreJson(const FitScore& score) {
@@ -38,4 +38,4 @@ std::string ReportJson(const TrainingReport& report) {
   return json.dump();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 // Mean squared errors of standardised rewards: 1 is what always predicting the mean reward gives.
 struct EpochLoss {
@@ -36,4 +36,4 @@ std::string LossCurveCsv(const TrainingReport& report);
 //  "curve": {"train_mse": [...], "validation_mse": [...]}}; NaN becomes null.
 std::string ReportJson(const TrainingReport& report);
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

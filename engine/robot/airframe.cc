@@ -8,7 +8,7 @@
 
 #include "engine/robot/rotors.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 namespace {
 
 constexpr double kThrustToWeight = 2.0;
@@ -207,4 +207,4 @@ std::string CheckFlyable(const Config& config) {
   return "";
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

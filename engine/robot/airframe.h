@@ -12,7 +12,7 @@
 
 #include "engine/config/config.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 
 inline constexpr int kRotors = 4;
 
@@ -83,4 +83,4 @@ double VerticalStandOffM(const RobotConfig& robot);
 // ("key: 'value' is not allowed; ...").
 std::string CheckFlyable(const Config& config);
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

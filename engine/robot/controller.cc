@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ed3r {
+namespace ed3r::robot {
 namespace {
 
 // Shares of the weight. Without thrust the rotors cannot turn the robot either, so the wanted lift never
@@ -59,7 +59,8 @@ Eigen::Vector3d FlightController::LimitForceN(const Eigen::Vector3d& force_n) co
   return {share * force_n.x(), share * force_n.y(), lift_n};
 }
 
-FlightController::Force FlightController::WantedForce(const RigidBodyState& state, const FlightReference& r) {
+FlightController::Force FlightController::WantedForce(const world::RigidBodyState& state,
+                                                      const FlightReference& r) {
   const Eigen::Vector3d speed_wanted =
       r.velocity_mps + gain_.position_radps * (r.position_m - state.position_m);
   const Eigen::Vector3d speed_error = speed_wanted - state.velocity_mps;
@@ -97,7 +98,7 @@ double FlightController::PerForce(const Force& force) const {
   return airframe_.mass_kg / std::max(force.newton.norm(), kLeastTurningForce * airframe_.WeightN());
 }
 
-Wrench FlightController::Step(const RigidBodyState& state, const FlightReference& r) {
+Wrench FlightController::Step(const world::RigidBodyState& state, const FlightReference& r) {
   const Force force = WantedForce(state, r);
   Wrench wrench;
   // The thrust arrives kRotorLagS late: ask for what will be wanted then.
@@ -114,4 +115,4 @@ Wrench FlightController::Step(const RigidBodyState& state, const FlightReference
   return wrench;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -16,7 +16,7 @@
 #include "engine/robot/rotors.h"
 #include "engine/world/flight_world.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 
 struct FlightReference {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
@@ -43,14 +43,14 @@ class FlightController {
   Hover StartHover(const Eigen::Vector3d& wind_mps, double yaw_rad);
 
   // The wrench to ask of the rotors for the next physics step.
-  Wrench Step(const RigidBodyState& state, const FlightReference& reference);
+  Wrench Step(const world::RigidBodyState& state, const FlightReference& reference);
 
  private:
   struct Force {
     Eigen::Vector3d newton;
     Eigen::Vector3d jerk_mps3;  // its derivative, per mass
   };
-  Force WantedForce(const RigidBodyState& state, const FlightReference& reference);
+  Force WantedForce(const world::RigidBodyState& state, const FlightReference& reference);
   Eigen::Vector3d WantedRate(const Eigen::Quaterniond& attitude, const Force& force,
                              const FlightReference& reference) const;
   double PerForce(const Force& force) const;
@@ -72,4 +72,4 @@ Eigen::Quaterniond AttitudeAlong(const Eigen::Vector3d& up, double yaw_rad);
 // Heading of such an attitude.
 double YawOf(const Eigen::Quaterniond& attitude);
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

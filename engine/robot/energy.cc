@@ -2,7 +2,7 @@
 
 #include "engine/robot/power/power_models.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 namespace {
 
 MovementPower PaperModel(const Rotorcraft& craft, const Air& air, const RobotConfig& robot,
@@ -46,4 +46,4 @@ ComputationCost Computation(const CpuConfig& cpu, const SensingConfig& sensing, 
 
 double PayloadByte(const SensingConfig& sensing) { return sensing.Frames() * sensing.frame_byte; }
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -6,7 +6,7 @@
 #include "engine/config/environment.h"
 #include "engine/config/robot.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 
 // P_m for each movement type, in watts. Vertical movement is split by direction (the indicator of Eq. P_ver).
 struct MovementPower {
@@ -33,4 +33,4 @@ ComputationCost Computation(const CpuConfig& cpu, const SensingConfig& sensing, 
 // Bytes of one offload: all frames of a sensing period (Eq. 8; R6: LiDAR is not sent).
 double PayloadByte(const SensingConfig& sensing);
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -15,7 +15,7 @@
 #include "engine/robot/wind.h"
 #include "engine/world/flight_world.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 namespace {
 
 constexpr double kNothingM = 1e-3;    // a shorter leg is not flown
@@ -48,7 +48,7 @@ double RestPoint(const Profile& profile, double time_s, double step_s) {
 }  // namespace
 
 struct Flight::Impl {
-  Impl(const Scene& the_scene, const Config& the_config, const Pose& start, std::uint64_t the_seed,
+  Impl(const world::Scene& the_scene, const Config& the_config, const Pose& start, std::uint64_t the_seed,
        std::uint32_t the_scenario)
       : scene(the_scene),
         config(the_config),
@@ -94,14 +94,14 @@ struct Flight::Impl {
   bool TurnSettled() const;
   void Record() const;
 
-  const Scene& scene;
+  const world::Scene& scene;
   const Config config;
   const std::uint64_t seed;
   const std::uint32_t scenario;
   const double step_s;
   const Airframe airframe;
   const FlightEnvelope envelope;
-  FlightWorld world;
+  world::FlightWorld world;
   Rotors rotors;
   FlightController controller;
   const LidarBundle lidars;
@@ -117,7 +117,7 @@ struct Flight::Impl {
   std::uint32_t timestep = 0;
   std::int64_t steps = 0;
   double path_m = 0.0;
-  RigidBodyState state;
+  world::RigidBodyState state;
   Eigen::Vector3d anchor_m = Eigen::Vector3d::Zero();  // where the reference rests between legs
   Profile turn;
   double turn_sign = 1.0;
@@ -304,7 +304,7 @@ void Flight::Impl::Bill(const LegResult& across, const LegResult& up_or_down, bo
   move.hovering_s = excess_s;
 }
 
-Flight::Flight(const Scene& scene, const Config& config, const Pose& start, std::uint64_t seed,
+Flight::Flight(const world::Scene& scene, const Config& config, const Pose& start, std::uint64_t seed,
                std::uint32_t scenario)
     : impl_(std::make_unique<Impl>(scene, config, start, seed, scenario)) {}
 
@@ -322,4 +322,4 @@ std::int64_t Flight::PhysicsSteps() const { return impl_->physics_steps; }
 
 std::int64_t Flight::LidarScans() const { return impl_->scans; }
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

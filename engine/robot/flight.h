@@ -23,7 +23,7 @@
 #include "engine/robot/motion.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 
 inline constexpr double kSettleLimitS = 3.0;
 inline constexpr double kBoxMarginM = 0.5;
@@ -49,7 +49,7 @@ class Flight {
  public:
   // Throws UserError when the airframe cannot fly (CheckFlyable).
   // The scene must outlive the flight; the configuration is copied.
-  Flight(const Scene& scene, const Config& config, const Pose& start, std::uint64_t seed,
+  Flight(const world::Scene& scene, const Config& config, const Pose& start, std::uint64_t seed,
          std::uint32_t scenario);
   ~Flight();
   Flight(const Flight&) = delete;
@@ -71,4 +71,4 @@ class Flight {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

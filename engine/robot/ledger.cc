@@ -1,6 +1,6 @@
 #include "engine/robot/ledger.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 
 StepEnergy Charge(const MovementPower& power, const StepTime& time, const DeviceEnergy& devices) {
   StepEnergy energy;
@@ -17,4 +17,4 @@ StepEnergy Charge(const MovementPower& power, const StepTime& time, const Device
   return energy;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

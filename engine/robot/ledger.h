@@ -3,7 +3,7 @@
 
 #include "engine/robot/energy.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 
 // Seconds of one timestep, by what they were spent on.
 struct StepTime {
@@ -35,4 +35,4 @@ struct DeviceEnergy {
 
 StepEnergy Charge(const MovementPower& power, const StepTime& time, const DeviceEnergy& devices);
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -8,7 +8,7 @@
 #include "engine/core/check.h"
 #include "engine/core/phase.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 namespace {
 
 // Between neighbouring rays. A trunk of radius 0.15 m stops two or three columns of rays, and the tip of a
@@ -43,7 +43,7 @@ double TubeMarginM(const EnvironmentConfig& environment) {
   return kTubeMarginM + kTubeMarginGustS * environment.gust_mps;
 }
 
-LidarBundle::LidarBundle(const StaticGeometry& geometry, double tube_radius_m, double range_m)
+LidarBundle::LidarBundle(const world::StaticGeometry& geometry, double tube_radius_m, double range_m)
     : geometry_(geometry), range_m_(range_m), offset_m_(SpreadOverDisc(tube_radius_m)) {}
 
 double LidarBundle::FreeDistance(const Eigen::Vector3d& centre_m, const Eigen::Vector3d& direction) const {
@@ -87,4 +87,4 @@ void LegWatch::Tick(const Eigen::Vector3d& position_m, double wanted_m) {
   if (drift_m > rule_.drift_m || out_of_sight) Scan(position_m);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -15,7 +15,7 @@
 #include "engine/config/environment.h"
 #include "engine/world/geometry.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 
 // Around the robot inside the LiDARs' tube.
 double TubeMarginM(const EnvironmentConfig& environment);
@@ -23,7 +23,7 @@ double TubeMarginM(const EnvironmentConfig& environment);
 class LidarBundle {
  public:
   // tube_radius_m: of the tube that the rays fill; range_m: beyond it nothing is seen.
-  LidarBundle(const StaticGeometry& geometry, double tube_radius_m, double range_m);
+  LidarBundle(const world::StaticGeometry& geometry, double tube_radius_m, double range_m);
 
   // Distance to the first surface in the tube along a unit direction, or +infinity when none is within range.
   double FreeDistance(const Eigen::Vector3d& centre_m, const Eigen::Vector3d& direction) const;
@@ -32,7 +32,7 @@ class LidarBundle {
   int Rays() const { return static_cast<int>(offset_m_.size()); }
 
  private:
-  const StaticGeometry& geometry_;
+  const world::StaticGeometry& geometry_;
   double range_m_;
   std::vector<Eigen::Vector2d> offset_m_;  // across the tube
 };
@@ -76,4 +76,4 @@ class LegWatch {
   int scans_ = 0;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace ed3r {
+namespace ed3r::robot {
 
 // yaw: 0 = east, counter-clockwise. tilt: camera below the horizon, 0 = level, pi/2 = straight down.
 struct Pose {
@@ -32,4 +32,4 @@ struct FlownMove {
   int contact_steps = 0;    // physics steps with contact; 0 in normal operation
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ed3r {
+namespace ed3r::robot {
 
 RotorThrusts Mix(const Airframe& airframe, const Wrench& wanted) {
   const double limit_n = airframe.rotor_thrust_max_n;
@@ -58,4 +58,4 @@ Wrench Rotors::Step(const Wrench& wanted) {
   return WrenchOf(airframe_, thrusts_n_);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -11,7 +11,7 @@
 
 #include "engine/robot/airframe.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 
 inline constexpr double kMotorLagS = 0.050;
 inline constexpr double kRotorLagS = 0.020;
@@ -48,4 +48,4 @@ class Rotors {
   RotorThrusts thrusts_n_ = {};
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -7,7 +7,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 namespace {
 
 struct Ramp {
@@ -166,4 +166,4 @@ void Profile::BrakeAt(double time_s) {
   SetEnd();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -11,7 +11,7 @@
 
 #include "engine/robot/airframe.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 
 struct ProfilePoint {
   double position = 0.0;
@@ -67,4 +67,4 @@ class Profile {
   double end_integral_ = 0.0;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace ed3r {
+namespace ed3r::robot {
 
 Wind::Wind(const EnvironmentConfig& environment, std::uint64_t seed, std::uint32_t scenario,
            std::uint32_t timestep, double step_s)
@@ -27,4 +27,4 @@ void Wind::Step() {
   velocity_mps_ = mean_mps_ + keep_ * (velocity_mps_ - mean_mps_) + Draw(renew_ * gust_mps_);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

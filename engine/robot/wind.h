@@ -12,7 +12,7 @@
 #include "engine/config/config.h"
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 
 inline constexpr double kGustCorrelationS = 3.0;
 
@@ -36,4 +36,4 @@ class Wind {
   Eigen::Vector3d velocity_mps_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

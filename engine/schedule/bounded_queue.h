@@ -9,7 +9,7 @@
 #include <mutex>
 #include <utility>
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 template <class Item>
 class BoundedQueue {
@@ -54,4 +54,4 @@ class BoundedQueue {
   bool closed_ = false;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

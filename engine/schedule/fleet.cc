@@ -14,7 +14,7 @@
 #include "engine/schedule/parallel_for.h"
 #include "engine/schedule/scheduler.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 template <class Values>
@@ -24,7 +24,7 @@ void Show(const Values& values, std::size_t row, std::vector<float>& column) {
                  [](double value) { return static_cast<float>(value); });
 }
 
-MotionCommand CommandOf(std::span<const float> values) {
+robot::MotionCommand CommandOf(std::span<const float> values) {
   return {.displacement_m = {values[0], values[1], values[2]}, .turn_rad = values[3], .tilt_rad = values[4]};
 }
 
@@ -38,8 +38,8 @@ void CopyValues(const std::vector<Value>& from, std::size_t from_row, std::vecto
 }  // namespace
 
 FleetColumns::FleetColumns(std::size_t rows)
-    : controller(rows * kRcStates),
-      robot(rows * kRobotStates),
+    : controller(rows * rfnn::kRcStates),
+      robot(rows * rfnn::kRobotStates),
       ranges(rows * 3),
       hovers(rows),
       reward(rows),
@@ -60,8 +60,8 @@ FleetColumns::FleetColumns(std::size_t rows)
       battery_j(rows) {}
 
 void FleetColumns::CopyRow(const FleetColumns& other, std::size_t from, std::size_t to) {
-  CopyValues(other.controller, from, controller, to, kRcStates);
-  CopyValues(other.robot, from, robot, to, kRobotStates);
+  CopyValues(other.controller, from, controller, to, rfnn::kRcStates);
+  CopyValues(other.robot, from, robot, to, rfnn::kRobotStates);
   CopyValues(other.ranges, from, ranges, to, 3);
   for (auto column :
        {&FleetColumns::hovers, &FleetColumns::terminated, &FleetColumns::truncated, &FleetColumns::begun})
@@ -125,20 +125,20 @@ void Fleet::Begin(std::size_t row) {
   r.task.reset();
   r.moved = r.over = r.recorded = false;
   now_.CopyRow(nothing_, 0, row);
-  const std::optional<MissionTask> task = task_(row, r.next);
+  const std::optional<mission::MissionTask> task = task_(row, r.next);
   if (!task) return;
   ++r.next;
   r.task.emplace(*task);
-  r.mission = std::make_unique<MissionStepper>(*r.task);
+  r.mission = std::make_unique<mission::MissionStepper>(*r.task);
   now_.mission[row] = r.task->mission;
   now_.battery_j[row] = r.task->config.robot.BatteryJ();
   ShowController(row);
 }
 
 void Fleet::ShowController(std::size_t row) {
-  const MissionStepper& mission = *rows_[row].mission;
-  Show(StateOf(mission.ControllerSees()), row, now_.controller);
-  const CompletionOrder& order = mission.Order();
+  const mission::MissionStepper& mission = *rows_[row].mission;
+  Show(agents::StateOf(mission.ControllerSees()), row, now_.controller);
+  const agents::CompletionOrder& order = mission.Order();
   Show(std::array{order.ranges.axis_m, order.ranges.yaw_rad, order.ranges.tilt_rad}, row, now_.ranges);
   now_.hovers[row] = order.hover;
   now_.timestep[row] = mission.Timestep();
@@ -153,23 +153,23 @@ void Fleet::Move(std::span<const float> commands) {
   ForEachRow([&](std::size_t row) {
     if (!UnderWay(row)) return;
     ED3R_CHECK(!rows_[row].moved, "moved twice");
-    MissionStepper& mission = *rows_[row].mission;
+    mission::MissionStepper& mission = *rows_[row].mission;
     mission.Move(CommandOf(commands.subspan(row * kCommandValues, kCommandValues)));
     rows_[row].moved = true;
-    Show(StateOf(mission.RobotSees()), row, now_.robot);
+    Show(agents::StateOf(mission.RobotSees()), row, now_.robot);
   });
 }
 
 void Fleet::Detect(std::span<const std::int64_t> executions) {
   ED3R_CHECK(executions.size() == rows_.size(), "executions of another size");
   for (std::size_t row = 0; row < rows_.size(); ++row)
-    if (UnderWay(row) && (executions[row] < 0 || executions[row] >= std::int64_t{kExecutions.size()}))
+    if (UnderWay(row) && (executions[row] < 0 || executions[row] >= std::int64_t{agents::kExecutions.size()}))
       throw UserError(
           fmt::format("executions[{}]: {} is not allowed; allowed: 0 offload | 1 full | 2 quantized", row,
                       executions[row]));
   ForEachRow([&](std::size_t row) {
     if (UnderWay(row)) {
-      DetectRow(row, static_cast<Execution>(executions[row]));
+      DetectRow(row, static_cast<agents::Execution>(executions[row]));
     } else if (rows_[row].over && autoreset_ == Autoreset::kNextStep) {
       Begin(row);
       now_.begun[row] = 1;
@@ -179,13 +179,13 @@ void Fleet::Detect(std::span<const std::int64_t> executions) {
   if (autoreset_ == Autoreset::kSameStep) BeginAgain();
 }
 
-void Fleet::DetectRow(std::size_t row, Execution execution) {
+void Fleet::DetectRow(std::size_t row, agents::Execution execution) {
   Row& r = rows_[row];
   ED3R_CHECK(r.moved, "detected before it moved");
   r.mission->Detect(execution);
   r.moved = false;
-  const TimestepRecord& step = r.mission->LastStep();
-  const std::optional<Outcome> outcome = r.mission->Result();
+  const mission::TimestepRecord& step = r.mission->LastStep();
+  const std::optional<mission::Outcome> outcome = r.mission->Result();
   now_.begun[row] = 0;
   now_.reward[row] = step.reward;
   now_.terminated[row] = outcome.has_value();
@@ -193,8 +193,8 @@ void Fleet::DetectRow(std::size_t row, Execution execution) {
   now_.outcome[row] = outcome ? static_cast<std::int64_t>(*outcome) : -1;
   now_.execution[row] = step.execution;
   now_.scs[row] = step.scs;
-  now_.duration_s[row] = DurationS(step);
-  now_.movement_j[row] = MovementJ(step);
+  now_.duration_s[row] = mission::DurationS(step);
+  now_.movement_j[row] = mission::MovementJ(step);
   now_.sensing_j[row] = step.sensing_j;
   now_.computation_j[row] = step.computation_j;
   now_.transmission_j[row] = step.transmission_j;
@@ -226,4 +226,4 @@ void Fleet::BeginAgain() {
   });
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -20,7 +20,7 @@
 #include "engine/mission/mission_stepper.h"
 #include "engine/rfnn/features.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 // What happens to a row whose mission has ended, as Gymnasium names it: its next step begins the next mission and nothing
 // else; the step that ends it does; or nothing does, and it waits for Reset.
@@ -51,10 +51,11 @@ struct FleetColumns {
 
 class Fleet {
  public:
-  using TaskFn = std::function<std::optional<MissionTask>(std::size_t row, std::int64_t nth)>;
+  using TaskFn = std::function<std::optional<mission::MissionTask>(std::size_t row, std::int64_t nth)>;
   // Receives each mission that has ended, or nothing for one that mission.max_timesteps cut short. Called by one thread,
   // in the order of rows.
-  using RecordFn = std::function<void(const MissionTask& task, std::optional<MissionRecord> record)>;
+  using RecordFn =
+      std::function<void(const mission::MissionTask& task, std::optional<mission::MissionRecord> record)>;
 
   // `rows` missions; none has begun before Reset. ThreadsFor(threads).
   Fleet(std::size_t rows, TaskFn task, int threads, Autoreset autoreset);
@@ -81,16 +82,16 @@ class Fleet {
 
  private:
   struct Row {
-    std::optional<MissionTask> task;
-    std::unique_ptr<MissionStepper> mission;  // none: never begun
-    std::int64_t next = 0;                    // number of the mission that begins next
+    std::optional<mission::MissionTask> task;
+    std::unique_ptr<mission::MissionStepper> mission;  // none: never begun
+    std::int64_t next = 0;                             // number of the mission that begins next
     bool moved = false;
     bool over = false;      // ended or truncated
     bool recorded = false;  // OnRecord knows of it
   };
   void ForEachRow(const std::function<void(std::size_t)>& body);
   void Begin(std::size_t row);
-  void DetectRow(std::size_t row, Execution execution);
+  void DetectRow(std::size_t row, agents::Execution execution);
   void ShowController(std::size_t row);
   void RecordEnded();
   void BeginAgain();
@@ -106,4 +107,4 @@ class Fleet {
   std::vector<std::exception_ptr> errors_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

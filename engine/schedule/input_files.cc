@@ -15,7 +15,7 @@
 #include "engine/world/terrain.h"
 #include "engine/world/world_file.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,22 +23,23 @@ namespace fs = std::filesystem;
 fs::path Located(const std::string& file) { return fs::absolute(file).lexically_normal(); }
 
 // What the arms call a file -> where it lies.
-std::map<std::string, fs::path> CalledFiles(const SweepPlan& plan) {
+std::map<std::string, fs::path> CalledFiles(const sweep::SweepPlan& plan) {
   std::map<std::string, fs::path> called;
-  for (const Stage& stage : plan.stages)
-    for (const Arm& arm : stage.arms)
+  for (const sweep::Stage& stage : plan.stages)
+    for (const sweep::Arm& arm : stage.arms)
       for (const std::string& key : ParameterKeys()) {
-        if (!NamesAFile(key)) continue;
+        if (!sweep::NamesAFile(key)) continue;
         const std::string path = GetParameter(arm.config, key);
-        if (path != FileNotNeeded(key)) called[GetParameter(arm.CanonicalConfig(), key)] = Located(path);
+        if (path != sweep::FileNotNeeded(key))
+          called[GetParameter(arm.CanonicalConfig(), key)] = Located(path);
       }
   return called;
 }
 
-std::set<std::string> Worlds(const SweepPlan& plan) {
+std::set<std::string> Worlds(const sweep::SweepPlan& plan) {
   std::set<std::string> worlds;
-  for (const Stage& stage : plan.stages)
-    for (const Arm& arm : stage.arms) worlds.insert(arm.config.mission.world);
+  for (const sweep::Stage& stage : plan.stages)
+    for (const sweep::Arm& arm : stage.arms) worlds.insert(arm.config.mission.world);
   return worlds;
 }
 
@@ -51,23 +52,23 @@ fs::path CommonFolder(const std::set<fs::path>& paths) {
   return common;
 }
 
-InputFile Kept(const fs::path& path, const std::string& name) {
+store::InputFile Kept(const fs::path& path, const std::string& name) {
   std::ifstream in(path, std::ios::binary);
   std::string bytes(std::istreambuf_iterator<char>(in), {});
   if (!in) throw UserError(fmt::format("{}: cannot be read", path.string()));
   Sha256 sha;
   sha.Update(bytes);
-  InputFile file{name, sha.Hex(), std::nullopt};
+  store::InputFile file{name, sha.Hex(), std::nullopt};
   if (static_cast<std::int64_t>(bytes.size()) <= kLargestKeptFile) file.content = std::move(bytes);
   return file;
 }
 
 // What stands beside an elevation grid and says how it is to be read (.prj, .tfw, masks), where it will have to stand
 // again -> where it lies: beside the file that a link leads to.
-std::map<fs::path, fs::path> BesideGrid(const GridTerrainSpec& grid) {
+std::map<fs::path, fs::path> BesideGrid(const world::GridTerrainSpec& grid) {
   const fs::path place = Located(grid.file);
   std::map<fs::path, fs::path> beside;
-  const std::vector<std::string> files = ElevationGridFiles(grid);
+  const std::vector<std::string> files = world::ElevationGridFiles(grid);
   const std::string stem = fs::path(files.front()).stem().string();
   for (std::size_t i = 1; i < files.size(); ++i) {
     std::string name = fs::path(files[i]).filename().string();
@@ -79,13 +80,13 @@ std::map<fs::path, fs::path> BesideGrid(const GridTerrainSpec& grid) {
 
 }  // namespace
 
-InputFiles ReadInputFiles(const SweepPlan& plan) {
+InputFiles ReadInputFiles(const sweep::SweepPlan& plan) {
   const std::map<std::string, fs::path> called = CalledFiles(plan);
   std::set<fs::path> paths;
   std::map<fs::path, fs::path> elsewhere;
   for (const auto& [name, path] : called) paths.insert(path);
   for (const std::string& world : Worlds(plan)) {
-    const WorldSpec spec = ReadWorldFile(world);
+    const world::WorldSpec spec = world::ReadWorldFile(world);
     for (const std::string& base : spec.bases) paths.insert(Located(base));
     if (spec.grid) {
       paths.insert(Located(spec.grid->file));
@@ -108,4 +109,4 @@ InputFiles ReadInputFiles(const SweepPlan& plan) {
   return kept;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -17,13 +17,13 @@
 #include "engine/schedule/training_stage.h"
 #include "engine/sweep/setting.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
-void CheckArm(const Arm& arm, const Scene& scene, std::uint64_t seed) {
-  FindStrategy(arm.config.mission.strategy);
-  DealScenario(scene, arm.config.mission, seed, 0);
-  CheckFlyable(arm.config);
+void CheckArm(const sweep::Arm& arm, const world::Scene& scene, std::uint64_t seed) {
+  agents::FindStrategy(arm.config.mission.strategy);
+  mission::DealScenario(scene, arm.config.mission, seed, 0);
+  robot::CheckFlyable(arm.config);
 }
 
 // Arms that look at the same scene with the same detectors share them.
@@ -34,24 +34,24 @@ std::string PixelKey(const Config& config) {
 }
 
 // Every world of the plan, loaded side by side. The error is that of the first world that has one.
-std::map<std::string, std::shared_ptr<const Scene>> LoadScenes(const SweepPlan& plan) {
+std::map<std::string, std::shared_ptr<const world::Scene>> LoadScenes(const sweep::SweepPlan& plan) {
   std::vector<std::string> files;
-  for (const Stage& stage : plan.stages)
-    for (const Arm& arm : stage.arms)
+  for (const sweep::Stage& stage : plan.stages)
+    for (const sweep::Arm& arm : stage.arms)
       if (std::find(files.begin(), files.end(), arm.config.mission.world) == files.end())
         files.push_back(arm.config.mission.world);
-  std::vector<std::shared_ptr<const Scene>> scenes(files.size());
+  std::vector<std::shared_ptr<const world::Scene>> scenes(files.size());
   std::vector<std::exception_ptr> errors(files.size());
   const int threads = std::min(ThreadsFor(0), static_cast<int>(files.size()));
   ParallelFor(std::max(threads, 1), static_cast<std::int64_t>(files.size()), [&](std::int64_t i) {
     const auto at = static_cast<std::size_t>(i);
     try {
-      scenes[at] = Scene::Load(files[at]);
+      scenes[at] = world::Scene::Load(files[at]);
     } catch (...) {
       errors[at] = std::current_exception();
     }
   });
-  std::map<std::string, std::shared_ptr<const Scene>> loaded;
+  std::map<std::string, std::shared_ptr<const world::Scene>> loaded;
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (errors[i]) std::rethrow_exception(errors[i]);
     loaded[files[i]] = scenes[i];
@@ -61,11 +61,11 @@ std::map<std::string, std::shared_ptr<const Scene>> LoadScenes(const SweepPlan& 
 
 }  // namespace
 
-Inputs::Inputs(const SweepPlan& plan) {
+Inputs::Inputs(const sweep::SweepPlan& plan) {
   CheckTraining(plan);
   scenes_ = LoadScenes(plan);
-  for (const Stage& stage : plan.stages) {
-    for (const Arm& arm : stage.arms) {
+  for (const sweep::Stage& stage : plan.stages) {
+    for (const sweep::Arm& arm : stage.arms) {
       try {
         CheckArm(arm, SceneOf(arm.config), plan.seed);
         AddPixels(arm.config);
@@ -79,54 +79,54 @@ Inputs::Inputs(const SweepPlan& plan) {
 
 void Inputs::AddPixels(const Config& config) {
   if (config.perception.tier != PerceptionTier::kPixels) return;
-  PixelTier& tier = pixels_[PixelKey(config)];
+  perception::PixelTier& tier = pixels_[PixelKey(config)];
   if (tier.scene) return;
-  tier.detectors = LoadDetectors(config.perception.detector);
-  tier.scene = std::make_shared<const TraceScene>(SceneOf(config));
+  tier.detectors = perception::LoadDetectors(config.perception.detector);
+  tier.scene = std::make_shared<const perception::TraceScene>(SceneOf(config));
 }
 
 void Inputs::AddNetworks(const Config& config) {
-  const Strategy& strategy = FindStrategy(config.mission.strategy);
-  const auto add = [&](const char* key, const std::string& file, bool asked, const NetworkDesign& design,
-                       auto& networks) {
-    if (file == FileNotNeeded(key) || networks.contains(file)) return;
+  const agents::Strategy& strategy = agents::FindStrategy(config.mission.strategy);
+  const auto add = [&](const char* key, const std::string& file, bool asked,
+                       const rfnn::NetworkDesign& design, auto& networks) {
+    if (file == sweep::FileNotNeeded(key) || networks.contains(file)) return;
     if (!asked)
       throw UserError(
           fmt::format("{}: '{}' is not allowed; strategy {} asks no such network", key, file, strategy.name));
-    networks[file] = OnnxNetwork::Read(file, key, design);
+    networks[file] = rfnn::OnnxNetwork::Read(file, key, design);
   };
-  add("networks.rc", config.networks.rc, strategy.motion.asks_network, kRcNetwork, rc_networks_);
-  add("networks.robot", config.networks.robot, strategy.execution.asks_network, kRobotNetwork,
+  add("networks.rc", config.networks.rc, strategy.motion.asks_network, rfnn::kRcNetwork, rc_networks_);
+  add("networks.robot", config.networks.robot, strategy.execution.asks_network, rfnn::kRobotNetwork,
       robot_networks_);
 }
 
-Networks Inputs::NetworksOf(const Config& config) const {
-  const auto find = [](const auto& networks, const std::string& file) -> const OnnxNetwork* {
+agents::Networks Inputs::NetworksOf(const Config& config) const {
+  const auto find = [](const auto& networks, const std::string& file) -> const rfnn::OnnxNetwork* {
     const auto found = networks.find(file);
     return found == networks.end() ? nullptr : found->second.get();
   };
-  Networks own;
-  if (const OnnxNetwork* rc = find(rc_networks_, config.networks.rc)) {
+  agents::Networks own;
+  if (const rfnn::OnnxNetwork* rc = find(rc_networks_, config.networks.rc)) {
     own.rc = rc->scores();
     own.direct_rc = rc->direct();
   }
-  if (const OnnxNetwork* robot = find(robot_networks_, config.networks.robot)) {
+  if (const rfnn::OnnxNetwork* robot = find(robot_networks_, config.networks.robot)) {
     own.robot = robot->scores();
     own.direct_robot = robot->direct();
   }
   return own;
 }
 
-const Scene& Inputs::SceneOf(const Config& config) const { return *scenes_.at(config.mission.world); }
+const world::Scene& Inputs::SceneOf(const Config& config) const { return *scenes_.at(config.mission.world); }
 
-const PixelTier* Inputs::PixelsOf(const Config& config) const {
+const perception::PixelTier* Inputs::PixelsOf(const Config& config) const {
   return config.perception.tier == PerceptionTier::kPixels ? &pixels_.at(PixelKey(config)) : nullptr;
 }
 
-std::map<std::string, std::string> Inputs::Fingerprints(const SweepPlan& plan) const {
+std::map<std::string, std::string> Inputs::Fingerprints(const sweep::SweepPlan& plan) const {
   std::map<std::string, std::string> fingerprints;
-  for (const Stage& stage : plan.stages) {
-    for (const Arm& arm : stage.arms) {
+  for (const sweep::Stage& stage : plan.stages) {
+    for (const sweep::Arm& arm : stage.arms) {
       const Config named = arm.CanonicalConfig();
       fingerprints[named.mission.world] = SceneOf(arm.config).Fingerprint();
       const auto add = [&](const auto& networks, const std::string& file, const std::string& called) {
@@ -136,7 +136,7 @@ std::map<std::string, std::string> Inputs::Fingerprints(const SweepPlan& plan) c
       };
       add(rc_networks_, arm.config.networks.rc, named.networks.rc);
       add(robot_networks_, arm.config.networks.robot, named.networks.robot);
-      if (const PixelTier* pixels = PixelsOf(arm.config)) {
+      if (const perception::PixelTier* pixels = PixelsOf(arm.config)) {
         const DetectorConfig& detector = named.perception.detector;
         fingerprints[fmt::format("detectors {}, {}", detector.full, detector.quantized)] =
             pixels->detectors.fingerprint;
@@ -146,4 +146,4 @@ std::map<std::string, std::string> Inputs::Fingerprints(const SweepPlan& plan) c
   return fingerprints;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

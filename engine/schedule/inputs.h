@@ -11,28 +11,28 @@
 #include "engine/sweep/plan.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 class Inputs {
  public:
   // Builds every world of the plan once, loads every detector once, and checks every arm against them: strategy, sites
   // in play, airframe. Throws UserError that names the sweep file and the arm. Also CheckTraining. Writes nothing.
-  explicit Inputs(const SweepPlan& plan);
+  explicit Inputs(const sweep::SweepPlan& plan);
 
-  const Scene& SceneOf(const Config& config) const;
-  const PixelTier* PixelsOf(const Config& config) const;  // null in the fast tier
-  Networks NetworksOf(const Config& config) const;        // the user's own; null where they are trained
+  const world::Scene& SceneOf(const Config& config) const;
+  const perception::PixelTier* PixelsOf(const Config& config) const;  // null in the fast tier
+  agents::Networks NetworksOf(const Config& config) const;  // the user's own; null where they are trained
 
   // Fingerprint of everything in a file or in the program's data that results depend on, by name.
-  std::map<std::string, std::string> Fingerprints(const SweepPlan& plan) const;
+  std::map<std::string, std::string> Fingerprints(const sweep::SweepPlan& plan) const;
 
  private:
   void AddPixels(const Config& config);
   void AddNetworks(const Config& config);
 
-  std::map<std::string, std::shared_ptr<const Scene>> scenes_;  // by mission.world
-  std::map<std::string, PixelTier> pixels_;                     // by PixelKey
-  std::map<std::string, std::shared_ptr<const OnnxNetwork>> rc_networks_, robot_networks_;  // by path
+  std::map<std::string, std::shared_ptr<const world::Scene>> scenes_;  // by mission.world
+  std::map<std::string, perception::PixelTier> pixels_;                // by PixelKey
+  std::map<std::string, std::shared_ptr<const rfnn::OnnxNetwork>> rc_networks_, robot_networks_;  // by path
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

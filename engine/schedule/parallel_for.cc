@@ -7,7 +7,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 // The loop's body between two edges that ThreadSanitizer can see. It does not see those of libgomp, which is
@@ -58,4 +58,4 @@ void ParallelFor(int threads, std::int64_t count, const std::function<void(std::
                     given, threads));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <functional>
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 // Calls body(i) once for each i in 0..count-1 on `threads` OpenMP threads; a thread takes the next i, in
 // ascending order, when it is free. `body` must not throw. What was written before the call is visible to
@@ -12,4 +12,4 @@ namespace ed3r {
 // gives fewer threads than asked (OMP_THREAD_LIMIT).
 void ParallelFor(int threads, std::int64_t count, const std::function<void(std::int64_t)>& body);
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

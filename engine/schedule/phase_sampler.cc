@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 // Not a divisor of anything that a run does regularly, such as its commits and progress lines.
@@ -54,4 +54,4 @@ void PhaseSampler::Loop(const std::stop_token& stop) {
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

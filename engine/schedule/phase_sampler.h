@@ -11,7 +11,7 @@
 
 #include "engine/core/phase.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 // Thread-seconds by phase: wall time, summed over the watched threads.
 struct PhaseTimes {
@@ -37,4 +37,4 @@ class PhaseSampler {
   std::jthread thread_;  // last: it uses all of the above
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

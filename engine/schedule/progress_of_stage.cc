@@ -7,33 +7,34 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
-int StageNumber(const SweepPlan& plan, const std::string& name) {
+int StageNumber(const sweep::SweepPlan& plan, const std::string& name) {
   for (std::size_t i = 0; i < plan.stages.size(); ++i)
     if (plan.stages[i].name == name) return static_cast<int>(i);
   throw InternalError("a stage waits for '" + name + "', which the plan does not have");
 }
 
 // Stored missions of an arm below `upto`.
-std::int64_t StoredBelow(const std::vector<RunId>& stored, int stage, int arm, int upto) {
-  return std::lower_bound(stored.begin(), stored.end(), RunId{stage, arm, upto}) -
-         std::lower_bound(stored.begin(), stored.end(), RunId{stage, arm, 0});
+std::int64_t StoredBelow(const std::vector<sweep::RunId>& stored, int stage, int arm, int upto) {
+  return std::lower_bound(stored.begin(), stored.end(), sweep::RunId{stage, arm, upto}) -
+         std::lower_bound(stored.begin(), stored.end(), sweep::RunId{stage, arm, 0});
 }
 
 }  // namespace
 
-bool StageProgress::Asks(const RunId& id) const {
+bool StageProgress::Asks(const sweep::RunId& id) const {
   return id.mission < upto && std::binary_search(open.begin(), open.end(), id.arm);
 }
 
-StageProgress ProgressOf(const SweepPlan& plan, const std::string& name, const std::vector<RunId>& stored,
-                         const std::string& dir, const HalfWidthFn& half_width) {
+StageProgress ProgressOf(const sweep::SweepPlan& plan, const std::string& name,
+                         const std::vector<sweep::RunId>& stored, const std::string& dir,
+                         const HalfWidthFn& half_width) {
   const int number = StageNumber(plan, name);
-  const Stage& stage = plan.stages[static_cast<std::size_t>(number)];
+  const sweep::Stage& stage = plan.stages[static_cast<std::size_t>(number)];
   StageProgress progress;
-  if (stage.kind == StageKind::kTrain) return progress;
+  if (stage.kind == sweep::StageKind::kTrain) return progress;
   progress.open.resize(stage.arms.size());
   std::iota(progress.open.begin(), progress.open.end(), 0);
   while (!progress.open.empty() && progress.upto < stage.missions) {
@@ -51,8 +52,9 @@ StageProgress ProgressOf(const SweepPlan& plan, const std::string& name, const s
   return progress;
 }
 
-void CheckReady(const SweepPlan& plan, const Stage& stage, const std::vector<RunId>& stored,
-                const std::string& dir, const HalfWidthFn& half_width) {
+void CheckReady(const sweep::SweepPlan& plan, const sweep::Stage& stage,
+                const std::vector<sweep::RunId>& stored, const std::string& dir,
+                const HalfWidthFn& half_width) {
   for (const std::string& name : stage.after) {
     const StageProgress progress = ProgressOf(plan, name, stored, dir, half_width);
     if (!progress.open.empty())
@@ -62,4 +64,4 @@ void CheckReady(const SweepPlan& plan, const Stage& stage, const std::vector<Run
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

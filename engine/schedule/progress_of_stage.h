@@ -9,7 +9,7 @@
 
 #include "engine/sweep/plan.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 // Half of the width of the 95 % interval that the first `missions` missions of an arm, all stored in `dir`, give for a
 // metric, in its unit; NaN where they give none.
@@ -22,17 +22,19 @@ struct StageProgress {
   std::int64_t missing = 0;  // of those, how many are not stored
 
   // Whether a mission of this stage is due, stored or not.
-  bool Asks(const RunId& id) const;
+  bool Asks(const sweep::RunId& id) const;
 };
 
 // `stored`: what `dir` holds, sorted. Without a precision every arm with a missing mission is open. With one, `upto` ends
 // the first round that is not wholly stored, and arms known well enough by the rounds before it are closed. A training
 // stage is never open. InternalError when the plan has no such stage.
-StageProgress ProgressOf(const SweepPlan& plan, const std::string& stage, const std::vector<RunId>& stored,
-                         const std::string& dir, const HalfWidthFn& half_width);
+StageProgress ProgressOf(const sweep::SweepPlan& plan, const std::string& stage,
+                         const std::vector<sweep::RunId>& stored, const std::string& dir,
+                         const HalfWidthFn& half_width);
 
 // UserError, where a stage that `stage` builds on is not finished, that names it and how many missions it lacks.
-void CheckReady(const SweepPlan& plan, const Stage& stage, const std::vector<RunId>& stored,
-                const std::string& dir, const HalfWidthFn& half_width);
+void CheckReady(const sweep::SweepPlan& plan, const sweep::Stage& stage,
+                const std::vector<sweep::RunId>& stored, const std::string& dir,
+                const HalfWidthFn& half_width);
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -1,6 +1,6 @@
 #include "engine/schedule/recorder.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 // How long the thread sleeps at most: the delay with which Ctrl-C reaches the missions in flight.
@@ -12,7 +12,7 @@ double Seconds(std::chrono::steady_clock::duration duration) {
 
 }  // namespace
 
-Recorder::Recorder(ResultStore& store, const ScheduleOptions& options, std::int64_t todo,
+Recorder::Recorder(store::ResultStore& store, const ScheduleOptions& options, std::int64_t todo,
                    std::size_t capacity)
     : store_(store), options_(options), queue_(capacity), line_(options.progress, options.quiet) {
   progress_.label = options.label;
@@ -90,4 +90,4 @@ void Recorder::ShowProgress() {
   line_.Show(progress_);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -16,13 +16,13 @@
 #include "engine/schedule/scheduler.h"
 #include "engine/store/store.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 // A mission that came to its end: a record, or what went wrong.
 struct Finished {
-  RunId id;
-  std::optional<MissionRecord> record;
-  Failure failure;
+  sweep::RunId id;
+  std::optional<mission::MissionRecord> record;
+  store::Failure failure;
   double wall_s = 0;
 };
 
@@ -30,7 +30,8 @@ struct Finished {
 class Recorder {
  public:
   // Starts the thread. `todo` is the number of missions that may come.
-  Recorder(ResultStore& store, const ScheduleOptions& options, std::int64_t todo, std::size_t capacity);
+  Recorder(store::ResultStore& store, const ScheduleOptions& options, std::int64_t todo,
+           std::size_t capacity);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -59,7 +60,7 @@ class Recorder {
   void CommitWhenDue();
   void ShowProgress();
 
-  ResultStore& store_;
+  store::ResultStore& store_;
   const ScheduleOptions options_;
   BoundedQueue<Finished> queue_;
   std::atomic<bool> stop_{false};
@@ -76,4 +77,4 @@ class Recorder {
   std::thread thread_;  // last: it uses all of the above
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

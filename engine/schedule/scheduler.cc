@@ -16,21 +16,21 @@
 #include "engine/schedule/recorder.h"
 #include "engine/store/records.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 constexpr int kMostThreads = 4096;
 constexpr std::size_t kQueuedPerThread = 4;  // finished missions that may wait for the writer
 
 // Kinds are words, kept with the results: append, never rename.
-Failure FailureOf(const std::exception_ptr& thrown) {
+store::Failure FailureOf(const std::exception_ptr& thrown) {
   try {
     std::rethrow_exception(thrown);
-  } catch (const BrokenInvariant& error) {
+  } catch (const mission::BrokenInvariant& error) {
     return {std::string(NameOf(error.Which())), error.what()};
   } catch (const InternalError& error) {
     return {"broken-check", error.what()};
-  } catch (const DetectorError& error) {
+  } catch (const perception::DetectorError& error) {
     return {"detector-answer", error.what()};
   } catch (const UserError& error) {
     return {"bad-input", error.what()};
@@ -45,13 +45,13 @@ Failure FailureOf(const std::exception_ptr& thrown) {
 
 // Flies one mission. Nothing when it was interrupted: a record that came back after the stop may be cut
 // short, so it is not trusted.
-std::optional<Finished> FlyOne(const FlyFn& fly, const RunId& id, const std::atomic<bool>& stop) {
+std::optional<Finished> FlyOne(const FlyFn& fly, const sweep::RunId& id, const std::atomic<bool>& stop) {
   Finished finished{.id = id, .record = std::nullopt, .failure = {}, .wall_s = 0};
   const auto begin = std::chrono::steady_clock::now();
   const InPhase mission(Phase::kMission);
   try {
     finished.record = fly(id, stop);
-    CheckStorable(*finished.record);
+    store::CheckStorable(*finished.record);
   } catch (const Interrupted&) {
     return std::nullopt;
   } catch (...) {
@@ -71,7 +71,7 @@ int ThreadsFor(int asked) {
   return asked > 0 ? asked : omp_get_num_procs();
 }
 
-RunSummary RunMissions(const std::vector<RunId>& todo, const FlyFn& fly, ResultStore& store,
+RunSummary RunMissions(const std::vector<sweep::RunId>& todo, const FlyFn& fly, store::ResultStore& store,
                        const ScheduleOptions& options) {
   const int threads = ThreadsFor(options.threads);
   const auto missions = static_cast<std::int64_t>(todo.size());
@@ -93,4 +93,4 @@ RunSummary RunMissions(const std::vector<RunId>& todo, const FlyFn& fly, ResultS
   return summary;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -20,12 +20,12 @@
 #include "engine/mission/record.h"
 #include "engine/store/store.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 // Flies one mission; called by many threads at once. `stop` becomes true when nobody wants the result any
 // more (Ctrl-C, a full disk): throw Interrupted (engine/core/interrupt.h) then. Any other exception makes the
 // mission a failed one.
-using FlyFn = std::function<MissionRecord(const RunId& id, const std::atomic<bool>& stop)>;
+using FlyFn = std::function<mission::MissionRecord(const sweep::RunId& id, const std::atomic<bool>& stop)>;
 
 struct ScheduleOptions {
   int threads = 0;                          // 0: one per processor that this process may use
@@ -54,7 +54,7 @@ int ThreadsFor(int asked);
 // Flies `todo` in this order, threads taking turns. A mission that throws becomes a failed one and the rest
 // goes on. Returns when all is committed. Throws the store's error, once, when the store fails: missions
 // committed before are kept. UserError when OpenMP gives fewer threads than asked.
-RunSummary RunMissions(const std::vector<RunId>& todo, const FlyFn& fly, ResultStore& store,
+RunSummary RunMissions(const std::vector<sweep::RunId>& todo, const FlyFn& fly, store::ResultStore& store,
                        const ScheduleOptions& options = {});
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -25,14 +25,14 @@
 #include "engine/store/schema.h"
 #include "engine/store/store.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
-bool IsOutside(const Arm& arm) { return FindStrategy(arm.config.mission.strategy).outside; }
+bool IsOutside(const sweep::Arm& arm) { return agents::FindStrategy(arm.config.mission.strategy).outside; }
 
-Recipe RecipeOf(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options) {
+store::Recipe RecipeOf(const sweep::SweepPlan& plan, const Inputs& inputs, const SweepOptions& options) {
   InputFiles files = ReadInputFiles(plan);
-  CodeIdentities code = CodeOf(plan);
+  store::CodeIdentities code = CodeOf(plan);
   if (!options.outside_identity.empty()) code["policy"] = {options.outside_identity};
   return {.plan_text = plan.CanonicalText(),
           .code = std::move(code),
@@ -53,13 +53,14 @@ void Add(const RunSummary& part, RunSummary& sum) {
 }
 
 // Missions of a stage that are stored; `stored` is sorted.
-std::int64_t StoredOfStage(const std::vector<RunId>& stored, int stage) {
-  return std::count_if(stored.begin(), stored.end(), [stage](const RunId& id) { return id.stage == stage; });
+std::int64_t StoredOfStage(const std::vector<sweep::RunId>& stored, int stage) {
+  return std::count_if(stored.begin(), stored.end(),
+                       [stage](const sweep::RunId& id) { return id.stage == stage; });
 }
 
-void CheckStageName(const SweepPlan& plan, const std::string& name) {
+void CheckStageName(const sweep::SweepPlan& plan, const std::string& name) {
   std::vector<std::string> names;
-  for (const Stage& stage : plan.stages) names.push_back(stage.name);
+  for (const sweep::Stage& stage : plan.stages) names.push_back(stage.name);
   if (name.empty() || std::find(names.begin(), names.end(), name) != names.end()) return;
   const std::string near = NearestWord(name, names);
   throw UserError(fmt::format("{}: no stage '{}'; allowed: {}{}", plan.file, name, fmt::join(names, ", "),
@@ -68,33 +69,34 @@ void CheckStageName(const SweepPlan& plan, const std::string& name) {
 
 }  // namespace
 
-CodeIdentities CodeOf(const SweepPlan& plan) {
+store::CodeIdentities CodeOf(const sweep::SweepPlan& plan) {
   const CodeVersion code = ThisCode();
-  CodeIdentities identities = {{"flight", {code.flight}}, {kMathLibrary, {MathLibraryIdentity()}}};
+  store::CodeIdentities identities = {{"flight", {code.flight}},
+                                      {store::kMathLibrary, {MathLibraryIdentity()}}};
   if (NeedsNetworks(plan)) identities["training"] = {code.training};
-  for (const Stage& stage : plan.stages) {
+  for (const sweep::Stage& stage : plan.stages) {
     if (stage.precision) identities["precision"] = {code.precision};
-    for (const Arm& arm : stage.arms)
+    for (const sweep::Arm& arm : stage.arms)
       if (arm.config.perception.tier == PerceptionTier::kPixels) identities["pixels"] = {code.pixels};
   }
   return identities;
 }
 
-MissionTask TaskOf(const SweepPlan& plan, const Inputs& inputs, const NetworkShelf* networks,
-                   const RunId& id) {
-  const Arm& arm =
+mission::MissionTask TaskOf(const sweep::SweepPlan& plan, const Inputs& inputs, const NetworkShelf* networks,
+                            const sweep::RunId& id) {
+  const sweep::Arm& arm =
       plan.stages.at(static_cast<std::size_t>(id.stage)).arms.at(static_cast<std::size_t>(id.arm));
-  const Scene& scene = inputs.SceneOf(arm.config);
-  MissionTask task{.scene = scene, .config = arm.config, .seed = plan.seed};
+  const world::Scene& scene = inputs.SceneOf(arm.config);
+  mission::MissionTask task{.scene = scene, .config = arm.config, .seed = plan.seed};
   task.pixels = inputs.PixelsOf(arm.config);
   task.scenario = static_cast<std::uint32_t>(arm.config.mission.first_scenario + id.mission);
   task.mission = id.mission;
   if (networks != nullptr) {
-    const int places = PlacesInPlay(scene, arm.config.mission);
+    const int places = mission::PlacesInPlay(scene, arm.config.mission);
     task.networks = networks->For(id, places);
     task.network_seed = networks->SeedIndex(id, places);
   }
-  const Networks own = inputs.NetworksOf(arm.config);
+  const agents::Networks own = inputs.NetworksOf(arm.config);
   if (own.rc != nullptr) task.networks.rc = own.rc;
   if (own.robot != nullptr) task.networks.robot = own.robot;
   task.networks.direct_rc = own.direct_rc;
@@ -107,13 +109,14 @@ namespace {
 // One run of the stages of a plan.
 class SweepRun {
  public:
-  SweepRun(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options)
+  SweepRun(const sweep::SweepPlan& plan, const Inputs& inputs, const SweepOptions& options)
       : plan_(plan),
         inputs_(inputs),
         options_(options),
-        layout_(LayoutOf(plan)),
-        store_(ResultStore::Open(options.dir, RecipeOf(plan, inputs, options), layout_,
-                                 options.accept_mixed ? OtherCode::kAccept : OtherCode::kRefuse)) {
+        layout_(store::LayoutOf(plan)),
+        store_(store::ResultStore::Open(
+            options.dir, RecipeOf(plan, inputs, options), layout_,
+            options.accept_mixed ? store::OtherCode::kAccept : store::OtherCode::kRefuse)) {
     RemoveLeftovers(options.dir);
     RemoveLeftovers(options.cache_dir);
     LookForDamage();
@@ -128,7 +131,7 @@ class SweepRun {
     RunStages();
     if (sampler) {
       summary_.profile = sampler->Finish();
-      store_->PutNote(kProfileNote, summary_.profile.Text());
+      store_->PutNote(store::kProfileNote, summary_.profile.Text());
       store_->Commit();
     }
     return std::move(summary_);
@@ -147,15 +150,16 @@ class SweepRun {
         summary_.waiting_stage = plan_.stages[i].name;
         break;
       }
-      plan_.stages[i].kind == StageKind::kTrain ? Train(plan_.stages[i].name) : Fly(static_cast<int>(i));
+      plan_.stages[i].kind == sweep::StageKind::kTrain ? Train(plan_.stages[i].name)
+                                                       : Fly(static_cast<int>(i));
     }
   }
 
   // Nothing is built on damaged missions, and a run that ends well leaves none behind.
   void LookForDamage() {
-    const std::vector<DamagedMission> damage = store_->FindDamage();
+    const std::vector<store::DamagedMission> damage = store_->FindDamage();
     if (damage.empty()) return;
-    if (!options_.repair) throw UserError(DamageText(options_.dir, damage.front()));
+    if (!options_.repair) throw UserError(store::DamageText(options_.dir, damage.front()));
     store_->Remove(damage);
     summary_.repaired = damage;
   }
@@ -165,25 +169,26 @@ class SweepRun {
   }
 
   // What is stored where the stages before are.
-  std::vector<RunId> Foundation() const {
+  std::vector<sweep::RunId> Foundation() const {
     if (options_.foundation.empty()) return store_->Stored();
-    if (!std::filesystem::exists(std::filesystem::path(options_.foundation) / kResultsFile)) return {};
-    ResultReader reader(options_.foundation);
+    if (!std::filesystem::exists(std::filesystem::path(options_.foundation) / store::kResultsFile)) return {};
+    store::ResultReader reader(options_.foundation);
     if (const auto difference = DifferenceOfRun(reader))
       throw UserError(fmt::format("{}: holds results of another recipe: {}; give another --from",
                                   options_.foundation, *difference));
     return reader.Stored();
   }
 
-  std::optional<std::string> DifferenceOfRun(const ResultReader& reader) const {
-    const Recipe here = RecipeOf(plan_, inputs_, options_);
-    if (auto difference = Difference(reader.StoredRecipe(), here)) return difference;
-    return options_.accept_mixed ? std::nullopt : CodeDifference(reader.StoredRecipe().code, here.code);
+  std::optional<std::string> DifferenceOfRun(const store::ResultReader& reader) const {
+    const store::Recipe here = RecipeOf(plan_, inputs_, options_);
+    if (auto difference = store::Difference(reader.StoredRecipe(), here)) return difference;
+    return options_.accept_mixed ? std::nullopt
+                                 : store::CodeDifference(reader.StoredRecipe().code, here.code);
   }
 
-  bool Ready(const Stage& stage) const {
+  bool Ready(const sweep::Stage& stage) const {
     if (stage.after.empty()) return true;
-    const std::vector<RunId> stored = Foundation();
+    const std::vector<sweep::RunId> stored = Foundation();
     return std::all_of(stage.after.begin(), stage.after.end(), [&](const std::string& name) {
       return finished_.contains(name) ||
              ProgressOf(plan_, name, stored, FoundationDir(), options_.half_width).open.empty();
@@ -194,24 +199,24 @@ class SweepRun {
     FetchNetworks(plan_.stages[static_cast<std::size_t>(stage)]);
     const bool precise = plan_.stages[static_cast<std::size_t>(stage)].precision.has_value();
     if (precise && options_.foundation.empty() && !options_.only_failed) return FlyUntilPrecise(stage);
-    const std::vector<RunId> stored = store_->Stored();
-    std::vector<RunId> todo = Todo(layout_, stage, options_.shard, stored);
+    const std::vector<sweep::RunId> stored = store_->Stored();
+    std::vector<sweep::RunId> todo = Todo(layout_, stage, options_.shard, stored);
     if (precise && !options_.only_failed) LeaveThisRound(stage, todo);
     FlyThese(stage, todo, stored);
   }
 
-  void LeaveThisRound(int stage, std::vector<RunId>& todo) const {
+  void LeaveThisRound(int stage, std::vector<sweep::RunId>& todo) const {
     const StageProgress round = ProgressOf(plan_, plan_.stages[static_cast<std::size_t>(stage)].name,
                                            Foundation(), FoundationDir(), options_.half_width);
-    std::erase_if(todo, [&](const RunId& id) { return !round.Asks(id); });
+    std::erase_if(todo, [&](const sweep::RunId& id) { return !round.Asks(id); });
   }
 
   // Those that the training stage left in the store, where this session did not train.
-  void FetchNetworks(const Stage& stage) {
+  void FetchNetworks(const sweep::Stage& stage) {
     const bool asked = std::any_of(stage.arms.begin(), stage.arms.end(),
-                                   [](const Arm& arm) { return NeedsTraining(arm.config); });
+                                   [](const sweep::Arm& arm) { return NeedsTraining(arm.config); });
     if (!asked || networks_ != nullptr) return;
-    const FlownNetworks flown = ResultReader(FoundationDir()).Networks();
+    const store::FlownNetworks flown = store::ResultReader(FoundationDir()).Networks();
     if (flown.uses.empty())
       throw UserError(fmt::format(
           "{}: holds no networks, which stage {} asks; 'ed3r run SWEEP --stage NAME --out {}' with "
@@ -222,45 +227,47 @@ class SweepRun {
   }
 
   bool AnyAgainFrom(int stage) const {
-    return std::any_of(again_.begin(), again_.end(), [&](const RunId& id) { return id.stage >= stage; });
+    return std::any_of(again_.begin(), again_.end(),
+                       [&](const sweep::RunId& id) { return id.stage >= stage; });
   }
 
-  void FlyThese(int stage, std::vector<RunId> todo, const std::vector<RunId>& stored) {
+  void FlyThese(int stage, std::vector<sweep::RunId> todo, const std::vector<sweep::RunId>& stored) {
     if (options_.only_failed)
-      std::erase_if(todo,
-                    [&](const RunId& id) { return !std::binary_search(again_.begin(), again_.end(), id); });
+      std::erase_if(todo, [&](const sweep::RunId& id) {
+        return !std::binary_search(again_.begin(), again_.end(), id);
+      });
     ScheduleOptions schedule = options_.schedule;
     schedule.label = plan_.stages[static_cast<std::size_t>(stage)].name;
     schedule.stored_before = StoredOfStage(stored, stage);
-    const FlyFn fly = [&](const RunId& id, const std::atomic<bool>& stop) {
-      MissionTask task = TaskOf(plan_, inputs_, networks_.get(), id);
+    const FlyFn fly = [&](const sweep::RunId& id, const std::atomic<bool>& stop) {
+      mission::MissionTask task = TaskOf(plan_, inputs_, networks_.get(), id);
       task.stop = &stop;
-      return FlyMission(task);
+      return mission::FlyMission(task);
     };
-    std::vector<RunId> inside, outside;
+    std::vector<sweep::RunId> inside, outside;
     std::partition_copy(todo.begin(), todo.end(), std::back_inserter(outside), std::back_inserter(inside),
-                        [&](const RunId& id) { return IsOutside(ArmOf(id)); });
+                        [&](const sweep::RunId& id) { return IsOutside(ArmOf(id)); });
     Add(RunMissions(inside, fly, *store_, schedule), summary_.flown);
     while (!outside.empty() && !summary_.flown.interrupted) {
       const int arm = outside.front().arm;
-      std::vector<RunId> of_arm;
+      std::vector<sweep::RunId> of_arm;
       std::copy_if(outside.begin(), outside.end(), std::back_inserter(of_arm),
-                   [&](const RunId& id) { return id.arm == arm; });
-      std::erase_if(outside, [&](const RunId& id) { return id.arm == arm; });
+                   [&](const sweep::RunId& id) { return id.arm == arm; });
+      std::erase_if(outside, [&](const sweep::RunId& id) { return id.arm == arm; });
       Add(FlyOutside(of_arm, schedule), summary_.flown);
     }
   }
 
-  const Arm& ArmOf(const RunId& id) const {
+  const sweep::Arm& ArmOf(const sweep::RunId& id) const {
     return plan_.stages[static_cast<std::size_t>(id.stage)].arms[static_cast<std::size_t>(id.arm)];
   }
 
-  RunSummary FlyOutside(const std::vector<RunId>& todo, const ScheduleOptions& schedule) {
+  RunSummary FlyOutside(const std::vector<sweep::RunId>& todo, const ScheduleOptions& schedule) {
     const auto missions = static_cast<std::int64_t>(todo.size());
     Recorder recorder(*store_, schedule, missions, todo.size());
     options_.outside(
         ArmOf(todo.front()), todo,
-        [&](const RunId& id, std::optional<MissionRecord> record, Failure failure) {
+        [&](const sweep::RunId& id, std::optional<mission::MissionRecord> record, store::Failure failure) {
           recorder.Offer({id, std::move(record), std::move(failure), 0.0});
         },
         recorder.stop());
@@ -274,15 +281,15 @@ class SweepRun {
   // Rounds of `every` missions for the arms that are not yet known well enough. A run that goes on takes the same
   // decisions again from what is stored.
   void FlyUntilPrecise(int stage) {
-    const Stage& plan = plan_.stages[static_cast<std::size_t>(stage)];
-    const Precision& precision = *plan.precision;
+    const sweep::Stage& plan = plan_.stages[static_cast<std::size_t>(stage)];
+    const sweep::Precision& precision = *plan.precision;
     std::vector<int> open(plan.arms.size());
     std::iota(open.begin(), open.end(), 0);
     for (int upto = 0; upto < plan.missions && !open.empty();) {
       upto = std::min(upto + precision.every, plan.missions);
-      const std::vector<RunId> stored = store_->Stored();
-      std::vector<RunId> todo = Todo(layout_, stage, options_.shard, stored);
-      std::erase_if(todo, [&](const RunId& id) {
+      const std::vector<sweep::RunId> stored = store_->Stored();
+      std::vector<sweep::RunId> todo = Todo(layout_, stage, options_.shard, stored);
+      std::erase_if(todo, [&](const sweep::RunId& id) {
         return id.mission >= upto || std::find(open.begin(), open.end(), id.arm) == open.end();
       });
       const std::int64_t failed_before = summary_.flown.failed;
@@ -311,13 +318,13 @@ class SweepRun {
     summary_.networks = networks_->All();
   }
 
-  const SweepPlan& plan_;
+  const sweep::SweepPlan& plan_;
   const Inputs& inputs_;
   const SweepOptions& options_;
-  const RunLayout layout_;
-  const std::unique_ptr<ResultStore> store_;
+  const store::RunLayout layout_;
+  const std::unique_ptr<store::ResultStore> store_;
   std::unique_ptr<NetworkShelf> networks_;
-  std::vector<RunId> again_;  // missions that have failed, where only those are asked for
+  std::vector<sweep::RunId> again_;  // missions that have failed, where only those are asked for
   std::set<std::string>
       finished_;  // stages with a precision whose arms are all known well enough, or flown out
   SweepSummary summary_;
@@ -325,17 +332,17 @@ class SweepRun {
 
 }  // namespace
 
-SweepSummary RunSweep(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options) {
+SweepSummary RunSweep(const sweep::SweepPlan& plan, const Inputs& inputs, const SweepOptions& options) {
   CheckStageName(plan, options.stage);
-  for (const Stage& stage : plan.stages)
-    for (const Arm& arm : stage.arms)
-      if (stage.kind == StageKind::kFly && IsOutside(arm) && !options.outside)
+  for (const sweep::Stage& stage : plan.stages)
+    for (const sweep::Arm& arm : stage.arms)
+      if (stage.kind == sweep::StageKind::kFly && IsOutside(arm) && !options.outside)
         throw UserError(
             fmt::format("{}: stage {}: arm {}: the decisions of strategy {} come from a program; fly it with "
                         "ed3r.fly of the "
                         "Python module",
-                        plan.file, stage.name, arm.name, kOutsideStrategy));
-  for (const Stage& stage : plan.stages)
+                        plan.file, stage.name, arm.name, agents::kOutsideStrategy));
+  for (const sweep::Stage& stage : plan.stages)
     if (stage.precision && options.shard.count > 1 && options.foundation.empty())
       throw UserError(
           fmt::format("{}: stage {}: a precision needs all missions of an arm; fly it without --shard, or in "
@@ -344,4 +351,4 @@ SweepSummary RunSweep(const SweepPlan& plan, const Inputs& inputs, const SweepOp
   return SweepRun(plan, inputs, options).Run();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

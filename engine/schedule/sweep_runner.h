@@ -18,22 +18,23 @@
 #include "engine/store/records.h"
 #include "engine/sweep/plan.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 // The code that decides this plan's results: of the subsystems that its arms use, and of the C library's mathematical functions.
-CodeIdentities CodeOf(const SweepPlan& plan);
+store::CodeIdentities CodeOf(const sweep::SweepPlan& plan);
 
 // What a plan makes of a mission: the same for flying, replaying and explaining.
 // `networks` may be null for arms that ask none. Plan, inputs and networks must outlive the task.
-MissionTask TaskOf(const SweepPlan& plan, const Inputs& inputs, const NetworkShelf* networks,
-                   const RunId& id);
+mission::MissionTask TaskOf(const sweep::SweepPlan& plan, const Inputs& inputs, const NetworkShelf* networks,
+                            const sweep::RunId& id);
 
 // Flies missions of one arm whose decisions come from outside (strategy external). Each that has ended is offered, or why it
 // failed; what is left when `stop` becomes true is flown another time. What it throws ends the sweep; what was offered is
 // kept.
-using OfferFn = std::function<void(const RunId& id, std::optional<MissionRecord> record, Failure failure)>;
-using OutsideFn = std::function<void(const Arm& arm, const std::vector<RunId>& todo, const OfferFn& offer,
-                                     const std::atomic<bool>& stop)>;
+using OfferFn = std::function<void(const sweep::RunId& id, std::optional<mission::MissionRecord> record,
+                                   store::Failure failure)>;
+using OutsideFn = std::function<void(const sweep::Arm& arm, const std::vector<sweep::RunId>& todo,
+                                     const OfferFn& offer, const std::atomic<bool>& stop)>;
 
 struct SweepOptions {
   std::string dir;
@@ -53,12 +54,12 @@ struct SweepOptions {
 };
 
 struct SweepSummary {
-  RunSummary flown;                      // of this session
-  std::string grown;                     // what the plan has got since the run was begun; "" where nothing
-  std::int64_t stored_before = 0;        // missions that were there already
-  std::vector<DamagedMission> repaired;  // taken out to be flown again
-  std::vector<ShelvedNetwork> networks;  // trained or found
-  PhaseTimes profile;                    // of options.profile; also a note of the session, kProfileNote
+  RunSummary flown;                // of this session
+  std::string grown;               // what the plan has got since the run was begun; "" where nothing
+  std::int64_t stored_before = 0;  // missions that were there already
+  std::vector<store::DamagedMission> repaired;  // taken out to be flown again
+  std::vector<ShelvedNetwork> networks;         // trained or found
+  PhaseTimes profile;         // of options.profile; also a note of the session, kProfileNote
   std::string waiting_stage;  // a stage that could not begin because a shard or a failed mission is missing
 };
 
@@ -68,6 +69,6 @@ struct SweepSummary {
 // A task of a batch system gives `stage` and `foundation`: it flies its shard of one stage into a store of its own and
 // reads the missions and networks of the stages before from the merged run, which it does not change. Of a stage with a
 // precision it flies its shard of the round that is due by what the foundation holds.
-SweepSummary RunSweep(const SweepPlan& plan, const Inputs& inputs, const SweepOptions& options);
+SweepSummary RunSweep(const sweep::SweepPlan& plan, const Inputs& inputs, const SweepOptions& options);
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -10,7 +10,7 @@
 #include "engine/core/check.h"
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 bool ParseNumber(std::string_view text, std::int64_t& value) {
@@ -43,13 +43,13 @@ bool InShard(std::int64_t linear_index, const Shard& shard) {
   return ShardOf(linear_index, shard.count) == shard.index;
 }
 
-std::vector<RunId> Todo(const RunLayout& layout, int stage, const Shard& shard,
-                        const std::vector<RunId>& stored) {
-  std::vector<RunId> todo;
-  const RunLayout::Stage& shape = layout.stages[stage];
+std::vector<sweep::RunId> Todo(const store::RunLayout& layout, int stage, const Shard& shard,
+                               const std::vector<sweep::RunId>& stored) {
+  std::vector<sweep::RunId> todo;
+  const store::RunLayout::Stage& shape = layout.stages[stage];
   for (int arm = 0; arm < static_cast<int>(shape.arms.size()); ++arm) {
     for (int mission = 0; mission < shape.missions; ++mission) {
-      const RunId id{stage, arm, mission};
+      const sweep::RunId id{stage, arm, mission};
       if (InShard(layout.LinearIndex(id), shard) && !std::binary_search(stored.begin(), stored.end(), id))
         todo.push_back(id);
     }
@@ -57,7 +57,7 @@ std::vector<RunId> Todo(const RunLayout& layout, int stage, const Shard& shard,
   return todo;
 }
 
-std::vector<RunId> Arrange(std::vector<RunId> todo, Order order, std::uint64_t seed) {
+std::vector<sweep::RunId> Arrange(std::vector<sweep::RunId> todo, Order order, std::uint64_t seed) {
   if (order == Order::kReversed) std::reverse(todo.begin(), todo.end());
   if (order == Order::kShuffled) {
     Stream stream(seed, 0, Purpose::kScenario);
@@ -67,4 +67,4 @@ std::vector<RunId> Arrange(std::vector<RunId> todo, Order order, std::uint64_t s
   return todo;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

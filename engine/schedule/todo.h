@@ -9,7 +9,7 @@
 
 #include "engine/store/layout.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 // Part `index` of `count`. Missions are dealt in plan order, one to each part, so that each gets its share of every
 // arm; a deal begins with another part each time, because sites recur at a fixed distance and far ones take longer.
@@ -28,12 +28,12 @@ std::int64_t ShardOf(std::int64_t linear_index, std::int64_t count);
 bool InShard(std::int64_t linear_index, const Shard& shard);
 
 // Missions of one stage that belong to the shard and are not in `stored` (sorted), in plan order.
-std::vector<RunId> Todo(const RunLayout& layout, int stage, const Shard& shard,
-                        const std::vector<RunId>& stored);
+std::vector<sweep::RunId> Todo(const store::RunLayout& layout, int stage, const Shard& shard,
+                               const std::vector<sweep::RunId>& stored);
 
 enum class Order { kNatural, kReversed, kShuffled };
 
 // For tests, which show that the order does not matter; a shuffle is a function of the seed.
-std::vector<RunId> Arrange(std::vector<RunId> todo, Order order, std::uint64_t seed = 0);
+std::vector<sweep::RunId> Arrange(std::vector<sweep::RunId> todo, Order order, std::uint64_t seed = 0);
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

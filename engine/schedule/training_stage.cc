@@ -15,7 +15,7 @@
 #include "engine/store/reader.h"
 #include "engine/sweep/setting.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 // Names of the agents in the store.
@@ -24,12 +24,12 @@ constexpr char kRobotAgent[] = "robot";
 
 // What is trained for an arm.
 bool NeedsRc(const Config& config) {
-  return FindStrategy(config.mission.strategy).motion.asks_network &&
-         config.networks.rc == FileNotNeeded("networks.rc");
+  return agents::FindStrategy(config.mission.strategy).motion.asks_network &&
+         config.networks.rc == sweep::FileNotNeeded("networks.rc");
 }
 bool NeedsRobot(const Config& config) {
-  return FindStrategy(config.mission.strategy).execution.asks_network &&
-         config.networks.robot == FileNotNeeded("networks.robot");
+  return agents::FindStrategy(config.mission.strategy).execution.asks_network &&
+         config.networks.robot == sweep::FileNotNeeded("networks.robot");
 }
 
 // All that the rows of a data set depend on.
@@ -40,44 +40,45 @@ std::string RewardKey(const WarmupPart& part, const AgentsConfig& agents) {
 }
 
 struct Samples {
-  DataSet rc{kRcNetwork.inputs()};
-  DataSet robot{kRobotNetwork.inputs()};
+  rfnn::DataSet rc{rfnn::kRcNetwork.inputs()};
+  rfnn::DataSet robot{rfnn::kRobotNetwork.inputs()};
 };
 
-Samples ReadSamples(ResultReader& reader, const SweepPlan& plan, const WarmupPart& part,
+Samples ReadSamples(store::ResultReader& reader, const sweep::SweepPlan& plan, const WarmupPart& part,
                     const AgentsConfig& agents) {
   const Config& flown =
       plan.stages[static_cast<std::size_t>(part.stage)].arms[static_cast<std::size_t>(part.arm)].config;
   Samples samples;
   reader.NeedTimesteps(part.stage);
-  reader.ForEachMission(
-      part.stage, part.arm, part.first, part.end, Steps::kLoad, [&](const StoredMission& mission) {
-        AppendSamples(mission.record, mission.id.mission, flown, agents, samples.rc, samples.robot);
-      });
+  reader.ForEachMission(part.stage, part.arm, part.first, part.end, store::Steps::kLoad,
+                        [&](const store::StoredMission& mission) {
+                          mission::AppendSamples(mission.record, mission.id.mission, flown, agents,
+                                                 samples.rc, samples.robot);
+                        });
   return samples;
 }
 
 }  // namespace
 
-Networks NetworkShelf::For(const RunId& id, int places) const {
+agents::Networks NetworkShelf::For(const sweep::RunId& id, int places) const {
   const int seed = SeedIndex(id, places);
   if (seed < 0) return {};
   const Pair& pair = by_arm_.at({id.stage, id.arm})[static_cast<std::size_t>(seed)];
   return {pair.rc.get(), pair.robot.get()};
 }
 
-int NetworkShelf::SeedIndex(const RunId& id, int places) const {
+int NetworkShelf::SeedIndex(const sweep::RunId& id, int places) const {
   const auto found = by_arm_.find({id.stage, id.arm});
   if (found == by_arm_.end()) return -1;
   return id.mission / places % static_cast<int>(found->second.size());
 }
 
-FlownNetworks NetworkShelf::Flown() const {
-  FlownNetworks flown;
-  std::map<const Model*, std::string> hashes;
+store::FlownNetworks NetworkShelf::Flown() const {
+  store::FlownNetworks flown;
+  std::map<const rfnn::Model*, std::string> hashes;
   for (const ShelvedNetwork& network : all_) {
-    const std::string& hash = hashes[network.model.get()] = NetworkHash(*network.model);
-    flown.files[hash] = {network.name, ModelBytes(*network.model)};
+    const std::string& hash = hashes[network.model.get()] = rfnn::NetworkHash(*network.model);
+    flown.files[hash] = {network.name, rfnn::ModelBytes(*network.model)};
   }
   for (const auto& [arm, pairs] : by_arm_)
     for (std::size_t seed = 0; seed < pairs.size(); ++seed)
@@ -89,17 +90,17 @@ FlownNetworks NetworkShelf::Flown() const {
   return flown;
 }
 
-std::unique_ptr<NetworkShelf> NetworkShelf::From(const FlownNetworks& flown, const std::string& dir) {
+std::unique_ptr<NetworkShelf> NetworkShelf::From(const store::FlownNetworks& flown, const std::string& dir) {
   auto shelf = std::make_unique<NetworkShelf>();
-  std::map<std::string, std::shared_ptr<const Model>> models;
-  for (const NetworkUse& use : flown.uses) {
-    const NetworkFile& file = flown.files.at(use.sha256);
+  std::map<std::string, std::shared_ptr<const rfnn::Model>> models;
+  for (const store::NetworkUse& use : flown.uses) {
+    const store::NetworkFile& file = flown.files.at(use.sha256);
     const std::string name = fmt::format("{}: network '{}'", dir, file.name);
-    std::shared_ptr<const Model>& model = models[use.sha256];
+    std::shared_ptr<const rfnn::Model>& model = models[use.sha256];
     if (!model) {
-      model = std::make_shared<const Model>(
-          OpenModel(file.model, name, use.agent == kRcAgent ? kRcNetwork : kRobotNetwork));
-      if (NetworkHash(*model) != use.sha256)
+      model = std::make_shared<const rfnn::Model>(
+          rfnn::OpenModel(file.model, name, use.agent == kRcAgent ? rfnn::kRcNetwork : rfnn::kRobotNetwork));
+      if (rfnn::NetworkHash(*model) != use.sha256)
         throw UserError(fmt::format("{}: is not the one that flew", name));
       shelf->all_.push_back({file.name, "", model});
     }
@@ -116,7 +117,7 @@ std::unique_ptr<NetworkShelf> NetworkShelf::From(const FlownNetworks& flown, con
 
 void NetworkShelf::Take(NetworkShelf&& other) {
   // A network that both have is one: the other's copy of it goes.
-  std::map<const Model*, std::shared_ptr<const Model>> here;
+  std::map<const rfnn::Model*, std::shared_ptr<const rfnn::Model>> here;
   for (ShelvedNetwork& network : other.all_) {
     const auto known = std::find_if(all_.begin(), all_.end(), [&](const ShelvedNetwork& mine) {
       return mine.name == network.name && mine.file == network.file;
@@ -126,7 +127,7 @@ void NetworkShelf::Take(NetworkShelf&& other) {
   }
   for (auto& [arm, pairs] : other.by_arm_) {
     for (Pair& pair : pairs)
-      for (std::shared_ptr<const Model>* model : {&pair.rc, &pair.robot})
+      for (std::shared_ptr<const rfnn::Model>* model : {&pair.rc, &pair.robot})
         if (*model) *model = here.at(model->get());
     by_arm_[arm] = std::move(pairs);
   }
@@ -134,23 +135,24 @@ void NetworkShelf::Take(NetworkShelf&& other) {
 
 bool NeedsTraining(const Config& config) { return NeedsRc(config) || NeedsRobot(config); }
 
-bool NeedsNetworks(const SweepPlan& plan) {
-  return std::any_of(plan.stages.begin(), plan.stages.end(), [](const Stage& stage) {
+bool NeedsNetworks(const sweep::SweepPlan& plan) {
+  return std::any_of(plan.stages.begin(), plan.stages.end(), [](const sweep::Stage& stage) {
     return std::any_of(stage.arms.begin(), stage.arms.end(),
-                       [](const Arm& arm) { return NeedsTraining(arm.config); });
+                       [](const sweep::Arm& arm) { return NeedsTraining(arm.config); });
   });
 }
 
-void CheckTraining(const SweepPlan& plan) {
-  for (const Stage& stage : plan.stages)
-    for (const Arm& arm : stage.arms)
-      if (stage.kind == StageKind::kFly && NeedsTraining(arm.config)) CheckWarmup(plan, stage, arm);
+void CheckTraining(const sweep::SweepPlan& plan) {
+  for (const sweep::Stage& stage : plan.stages)
+    for (const sweep::Arm& arm : stage.arms)
+      if (stage.kind == sweep::StageKind::kFly && NeedsTraining(arm.config)) CheckWarmup(plan, stage, arm);
 }
 
 // Collects what is to be trained, each network once, and hands the results out.
 class TrainingStage {
  public:
-  TrainingStage(const SweepPlan& plan, const TrainingOptions& options) : plan_(plan), options_(options) {
+  TrainingStage(const sweep::SweepPlan& plan, const TrainingOptions& options)
+      : plan_(plan), options_(options) {
     Collect();
   }
 
@@ -171,18 +173,18 @@ class TrainingStage {
     Samples samples;
   };
   void Collect();
-  std::size_t AddJob(const NetworkDesign& design, const DataSet& data, const Arm& arm,
+  std::size_t AddJob(const rfnn::NetworkDesign& design, const rfnn::DataSet& data, const sweep::Arm& arm,
                      std::string_view source, int seed);
   const Samples& SamplesFor(const WarmupPart& part, const AgentsConfig& agents);
-  void ReadLessons(const std::vector<TrainJob>& jobs);
+  void ReadLessons(const std::vector<rfnn::TrainJob>& jobs);
   // Null where it was stopped.
-  std::vector<std::shared_ptr<const Model>> Train(const std::vector<TrainJob>& jobs,
-                                                  const std::vector<std::string>& names);
+  std::vector<std::shared_ptr<const rfnn::Model>> Train(const std::vector<rfnn::TrainJob>& jobs,
+                                                        const std::vector<std::string>& names);
 
-  const SweepPlan& plan_;
+  const sweep::SweepPlan& plan_;
   const TrainingOptions& options_;
   std::map<std::string, Lesson> lessons_;
-  std::vector<TrainJob> jobs_;
+  std::vector<rfnn::TrainJob> jobs_;
   std::vector<std::string> names_;
   std::vector<ArmNeed> needs_;
 };
@@ -191,20 +193,20 @@ const Samples& TrainingStage::SamplesFor(const WarmupPart& part, const AgentsCon
   return lessons_.try_emplace(RewardKey(part, agents), Lesson{part, agents, {}}).first->second.samples;
 }
 
-void TrainingStage::ReadLessons(const std::vector<TrainJob>& jobs) {
+void TrainingStage::ReadLessons(const std::vector<rfnn::TrainJob>& jobs) {
   for (auto& [key, lesson] : lessons_) {
-    const bool needed = std::any_of(jobs.begin(), jobs.end(), [&lesson = lesson](const TrainJob& job) {
+    const bool needed = std::any_of(jobs.begin(), jobs.end(), [&lesson = lesson](const rfnn::TrainJob& job) {
       return job.data == &lesson.samples.rc || job.data == &lesson.samples.robot;
     });
     if (!needed) continue;
-    ResultReader reader(options_.run_dir);
+    store::ResultReader reader(options_.run_dir);
     lesson.samples = ReadSamples(reader, plan_, lesson.part, lesson.agents);
   }
 }
 
-std::size_t TrainingStage::AddJob(const NetworkDesign& design, const DataSet& data, const Arm& arm,
-                                  std::string_view source, int seed) {
-  TrainJob job{
+std::size_t TrainingStage::AddJob(const rfnn::NetworkDesign& design, const rfnn::DataSet& data,
+                                  const sweep::Arm& arm, std::string_view source, int seed) {
+  rfnn::TrainJob job{
       .design = design,
       .data = &data,
       .config = arm.config.training,
@@ -215,7 +217,9 @@ std::size_t TrainingStage::AddJob(const NetworkDesign& design, const DataSet& da
                                  arm.variant.empty() ? "" : fmt::format(" of {}", arm.variant),
                                  arm.config.agents.eta_min, job.seed);
   for (std::size_t i = 0; i < jobs_.size(); ++i)  // keys of the jobs alone: no sample is read yet
-    if (names_[i] == name && jobs_[i].data == job.data && TrainingKey(jobs_[i]) == TrainingKey(job)) return i;
+    if (names_[i] == name && jobs_[i].data == job.data &&
+        rfnn::TrainingKey(jobs_[i]) == rfnn::TrainingKey(job))
+      return i;
   jobs_.push_back(std::move(job));
   names_.push_back(std::move(name));
   return jobs_.size() - 1;
@@ -223,41 +227,42 @@ std::size_t TrainingStage::AddJob(const NetworkDesign& design, const DataSet& da
 
 void TrainingStage::Collect() {
   for (std::size_t s = 0; s < plan_.stages.size(); ++s) {
-    const Stage& stage = plan_.stages[s];
+    const sweep::Stage& stage = plan_.stages[s];
     for (std::size_t a = 0; a < stage.arms.size(); ++a) {
-      const Arm& arm = stage.arms[a];
-      if (stage.kind != StageKind::kFly || !NeedsTraining(arm.config)) continue;
-      const std::string_view source = FindStrategy(arm.config.mission.strategy).networks;
+      const sweep::Arm& arm = stage.arms[a];
+      if (stage.kind != sweep::StageKind::kFly || !NeedsTraining(arm.config)) continue;
+      const std::string_view source = agents::FindStrategy(arm.config.mission.strategy).networks;
       const WarmupChoice choice = ChooseWarmup(plan_, stage, arm);
       if (!options_.stage.empty() && !choice.trainings.contains(options_.stage)) continue;
       ArmNeed need{static_cast<int>(s), static_cast<int>(a), {}, {}};
       for (int seed = 0; seed < arm.config.training.seeds; ++seed) {
         const Samples& samples =
             SamplesFor(PartOf(plan_, choice, arm.config.training, seed), arm.config.agents);
-        if (NeedsRc(arm.config)) need.rc_jobs.push_back(AddJob(kRcNetwork, samples.rc, arm, source, seed));
+        if (NeedsRc(arm.config))
+          need.rc_jobs.push_back(AddJob(rfnn::kRcNetwork, samples.rc, arm, source, seed));
         if (NeedsRobot(arm.config))
-          need.robot_jobs.push_back(AddJob(kRobotNetwork, samples.robot, arm, source, seed));
+          need.robot_jobs.push_back(AddJob(rfnn::kRobotNetwork, samples.robot, arm, source, seed));
       }
       needs_.push_back(std::move(need));
     }
   }
 }
 
-std::vector<std::shared_ptr<const Model>> TrainingStage::Train(const std::vector<TrainJob>& jobs,
-                                                               const std::vector<std::string>& names) {
+std::vector<std::shared_ptr<const rfnn::Model>> TrainingStage::Train(const std::vector<rfnn::TrainJob>& jobs,
+                                                                     const std::vector<std::string>& names) {
   ReadLessons(jobs);
-  TrainAllOptions train;
+  rfnn::TrainAllOptions train;
   train.cache = options_.cache_dir;
   train.threads = options_.threads;
   train.stop = options_.stop;
   ProgressLine line(options_.progress, options_.quiet);
   std::size_t done = 0;
   train.on_done = [&](std::size_t) { ++done; };
-  train.on_epoch = [&](std::size_t job, int epoch, const EpochLoss& loss) {
+  train.on_epoch = [&](std::size_t job, int epoch, const rfnn::EpochLoss& loss) {
     line.Show(fmt::format("training  {}/{} networks  {}: epoch {}, validation loss {:.4f}", done, jobs.size(),
                           names[job], epoch, loss.validation));
   };
-  std::vector<std::shared_ptr<const Model>> models = TrainAll(jobs, train);
+  std::vector<std::shared_ptr<const rfnn::Model>> models = rfnn::TrainAll(jobs, train);
   line.Clear();
   if (std::any_of(models.begin(), models.end(), [](const auto& model) { return model == nullptr; }))
     models.clear();
@@ -267,17 +272,17 @@ std::vector<std::shared_ptr<const Model>> TrainingStage::Train(const std::vector
 std::vector<bool> TrainingStage::InCache() {
   ReadLessons(jobs_);
   std::vector<bool> found;
-  for (const TrainJob& job : jobs_)
-    found.push_back(std::filesystem::exists(CachePath(options_.cache_dir, job)));
+  for (const rfnn::TrainJob& job : jobs_)
+    found.push_back(std::filesystem::exists(rfnn::CachePath(options_.cache_dir, job)));
   return found;
 }
 
 std::unique_ptr<NetworkShelf> TrainingStage::Run() {
-  const std::vector<std::shared_ptr<const Model>> models = Train(jobs_, names_);
+  const std::vector<std::shared_ptr<const rfnn::Model>> models = Train(jobs_, names_);
   if (models.empty() && !jobs_.empty()) return nullptr;
   auto shelf = std::make_unique<NetworkShelf>();
   for (std::size_t i = 0; i < jobs_.size(); ++i)
-    shelf->all_.push_back({names_[i], CachePath(options_.cache_dir, jobs_[i]), models[i]});
+    shelf->all_.push_back({names_[i], rfnn::CachePath(options_.cache_dir, jobs_[i]), models[i]});
   for (const ArmNeed& need : needs_) {
     std::vector<NetworkShelf::Pair>& pairs = shelf->by_arm_[{need.stage, need.arm}];
     for (std::size_t seed = 0; seed < std::max(need.rc_jobs.size(), need.robot_jobs.size()); ++seed)
@@ -288,36 +293,36 @@ std::unique_ptr<NetworkShelf> TrainingStage::Run() {
 }
 
 std::vector<ShelvedNetwork> TrainingStage::RunPart(const Shard& part) {
-  std::vector<TrainJob> jobs;
+  std::vector<rfnn::TrainJob> jobs;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < jobs_.size(); ++i) {
     if (!InShard(static_cast<std::int64_t>(i), part)) continue;
     jobs.push_back(jobs_[i]);
     names.push_back(names_[i]);
   }
-  const std::vector<std::shared_ptr<const Model>> models = Train(jobs, names);
+  const std::vector<std::shared_ptr<const rfnn::Model>> models = Train(jobs, names);
   std::vector<ShelvedNetwork> networks;
   for (std::size_t i = 0; i < models.size(); ++i)
-    networks.push_back({names[i], CachePath(options_.cache_dir, jobs[i]), models[i]});
+    networks.push_back({names[i], rfnn::CachePath(options_.cache_dir, jobs[i]), models[i]});
   return networks;
 }
 
-std::unique_ptr<NetworkShelf> TrainNetworks(const SweepPlan& plan, const TrainingOptions& options) {
+std::unique_ptr<NetworkShelf> TrainNetworks(const sweep::SweepPlan& plan, const TrainingOptions& options) {
   return TrainingStage(plan, options).Run();
 }
 
-std::int64_t CountNetworks(const SweepPlan& plan) {
+std::int64_t CountNetworks(const sweep::SweepPlan& plan) {
   const TrainingOptions nothing;
   return static_cast<std::int64_t>(TrainingStage(plan, nothing).Jobs());
 }
 
-std::vector<bool> NetworksInCache(const SweepPlan& plan, const TrainingOptions& options) {
+std::vector<bool> NetworksInCache(const sweep::SweepPlan& plan, const TrainingOptions& options) {
   return TrainingStage(plan, options).InCache();
 }
 
-std::vector<ShelvedNetwork> TrainPart(const SweepPlan& plan, const TrainingOptions& options,
+std::vector<ShelvedNetwork> TrainPart(const sweep::SweepPlan& plan, const TrainingOptions& options,
                                       const Shard& part) {
   return TrainingStage(plan, options).RunPart(part);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

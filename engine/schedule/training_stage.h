@@ -21,13 +21,13 @@
 #include "engine/store/networks.h"
 #include "engine/sweep/plan.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 // A network that was trained or found in the cache.
 struct ShelvedNetwork {
   std::string name;  // "rc from random, eta_min 0.75, seed 1"
   std::string file;  // in the cache
-  std::shared_ptr<const Model> model;
+  std::shared_ptr<const rfnn::Model> model;
 };
 
 // Networks by the arm that asks for them. Immutable once made; shared read-only by all missions.
@@ -35,9 +35,9 @@ class NetworkShelf {
  public:
   // Those of one mission. Missions of an arm take turns among the arm's training seeds, `places` missions at a time, so
   // that every network meets every site and base station. All null for arms that ask none.
-  Networks For(const RunId& id, int places) const;
+  agents::Networks For(const sweep::RunId& id, int places) const;
   // Which of its arm's training seeds a mission flies with; -1 without networks.
-  int SeedIndex(const RunId& id, int places) const;
+  int SeedIndex(const sweep::RunId& id, int places) const;
 
   const std::vector<ShelvedNetwork>& All() const { return all_; }
 
@@ -45,14 +45,14 @@ class NetworkShelf {
   void Take(NetworkShelf&& other);
 
   // For the store, and back from it.
-  FlownNetworks Flown() const;
+  store::FlownNetworks Flown() const;
   // Every network is compared with the hash under which it flew; UserError when one differs.
-  static std::unique_ptr<NetworkShelf> From(const FlownNetworks& flown, const std::string& dir);
+  static std::unique_ptr<NetworkShelf> From(const store::FlownNetworks& flown, const std::string& dir);
 
  private:
   friend class TrainingStage;
   struct Pair {
-    std::shared_ptr<const Model> rc, robot;
+    std::shared_ptr<const rfnn::Model> rc, robot;
   };
   std::map<std::pair<int, int>, std::vector<Pair>> by_arm_;  // (stage, arm) -> one pair per training seed
   std::vector<ShelvedNetwork> all_;
@@ -70,26 +70,26 @@ struct TrainingOptions {
 
 // Whether an arm, or any arm of the plan, asks for networks that are trained: its strategy asks one, and it is no file.
 bool NeedsTraining(const Config& config);
-bool NeedsNetworks(const SweepPlan& plan);
+bool NeedsNetworks(const sweep::SweepPlan& plan);
 
 // Arms that ask for networks must stand in stages behind a training stage that is behind a warm-up with their source
 // strategy, with missions for each network (CheckWarmup). Throws UserError that says what is missing; part of the checks before anything is written.
-void CheckTraining(const SweepPlan& plan);
+void CheckTraining(const sweep::SweepPlan& plan);
 
 // Trains, or finds, the networks of a training stage: those of arms behind it whose warm-up is before it, so that nothing
 // is learned from a warm-up that is not flown out. Null when stopped: the same call again continues. NetworkShelf::From() takes them from
 // a run that has flown.
-std::unique_ptr<NetworkShelf> TrainNetworks(const SweepPlan& plan, const TrainingOptions& options);
+std::unique_ptr<NetworkShelf> TrainNetworks(const sweep::SweepPlan& plan, const TrainingOptions& options);
 
 // How many networks TrainNetworks() would train where the cache holds none. Reads nothing.
-std::int64_t CountNetworks(const SweepPlan& plan);
+std::int64_t CountNetworks(const sweep::SweepPlan& plan);
 
 // By network: whether the cache holds it already. Reads the warm-up of `options.run_dir`.
-std::vector<bool> NetworksInCache(const SweepPlan& plan, const TrainingOptions& options);
+std::vector<bool> NetworksInCache(const sweep::SweepPlan& plan, const TrainingOptions& options);
 
 // Network i of these for every i that leaves the part's remainder, into the cache: tasks of a batch system share the work,
 // and TrainNetworks() then finds them all. Empty when stopped, or where the part has no network.
-std::vector<ShelvedNetwork> TrainPart(const SweepPlan& plan, const TrainingOptions& options,
+std::vector<ShelvedNetwork> TrainPart(const sweep::SweepPlan& plan, const TrainingOptions& options,
                                       const Shard& part);
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -7,13 +7,13 @@
 #include "engine/agents/strategy.h"
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 constexpr int kFewestMissions = 3;  // one each to train, validate and test on
 
 // Stages that `stage` builds on, directly or not.
-std::set<std::string> Foundations(const SweepPlan& plan, const Stage& stage) {
+std::set<std::string> Foundations(const sweep::SweepPlan& plan, const sweep::Stage& stage) {
   std::set<std::string> found(stage.after.begin(), stage.after.end());
   for (auto it = plan.stages.rbegin(); it != plan.stages.rend();
        ++it)  // a stage stands behind those it builds on
@@ -21,16 +21,16 @@ std::set<std::string> Foundations(const SweepPlan& plan, const Stage& stage) {
   return found;
 }
 
-std::string_view SourceOf(const Arm& learner) {
-  return FindStrategy(learner.config.mission.strategy).networks;
+std::string_view SourceOf(const sweep::Arm& learner) {
+  return agents::FindStrategy(learner.config.mission.strategy).networks;
 }
 
 // Training stages among `foundations` that come after the flying stage of this name.
-std::set<std::string> TrainingsBehind(const SweepPlan& plan, const std::set<std::string>& foundations,
+std::set<std::string> TrainingsBehind(const sweep::SweepPlan& plan, const std::set<std::string>& foundations,
                                       const std::string& flown) {
   std::set<std::string> trainings;
-  for (const Stage& stage : plan.stages)
-    if (stage.kind == StageKind::kTrain && foundations.contains(stage.name) &&
+  for (const sweep::Stage& stage : plan.stages)
+    if (stage.kind == sweep::StageKind::kTrain && foundations.contains(stage.name) &&
         Foundations(plan, stage).contains(flown))
       trainings.insert(stage.name);
   return trainings;
@@ -38,11 +38,12 @@ std::set<std::string> TrainingsBehind(const SweepPlan& plan, const std::set<std:
 
 }  // namespace
 
-WarmupChoice ChooseWarmup(const SweepPlan& plan, const Stage& stage, const Arm& learner) {
+WarmupChoice ChooseWarmup(const sweep::SweepPlan& plan, const sweep::Stage& stage,
+                          const sweep::Arm& learner) {
   const std::set<std::string> foundations = Foundations(plan, stage);
   for (std::size_t s = 0; s < plan.stages.size(); ++s) {
-    const Stage& flown = plan.stages[s];
-    if (flown.kind != StageKind::kFly || !foundations.contains(flown.name)) continue;
+    const sweep::Stage& flown = plan.stages[s];
+    if (flown.kind != sweep::StageKind::kFly || !foundations.contains(flown.name)) continue;
     std::set<std::string> trainings = TrainingsBehind(plan, foundations, flown.name);
     if (trainings.empty()) continue;
     for (std::size_t a = 0; a < flown.arms.size(); ++a)
@@ -53,7 +54,7 @@ WarmupChoice ChooseWarmup(const SweepPlan& plan, const Stage& stage, const Arm& 
   return {};
 }
 
-WarmupPart PartOf(const SweepPlan& plan, const WarmupChoice& warmup, const TrainingConfig& training,
+WarmupPart PartOf(const sweep::SweepPlan& plan, const WarmupChoice& warmup, const TrainingConfig& training,
                   int seed) {
   const int missions = plan.stages[static_cast<std::size_t>(warmup.stage)].missions;
   if (!training.own_warmups) return {warmup.stage, warmup.arm, 0, missions};
@@ -61,7 +62,7 @@ WarmupPart PartOf(const SweepPlan& plan, const WarmupChoice& warmup, const Train
   return {warmup.stage, warmup.arm, seed * share, (seed + 1) * share};
 }
 
-void CheckWarmup(const SweepPlan& plan, const Stage& stage, const Arm& learner) {
+void CheckWarmup(const sweep::SweepPlan& plan, const sweep::Stage& stage, const sweep::Arm& learner) {
   const WarmupChoice choice = ChooseWarmup(plan, stage, learner);
   const std::string who = fmt::format("{}: stage {}: arm {}", plan.file, stage.name, learner.name);
   if (!choice)
@@ -69,7 +70,7 @@ void CheckWarmup(const SweepPlan& plan, const Stage& stage, const Arm& learner) 
         fmt::format("{} asks networks, so the stage must come after a training stage ('kind: train') that "
                     "comes after a stage with strategy {}",
                     who, SourceOf(learner)));
-  const Stage& warmup = plan.stages[static_cast<std::size_t>(choice.stage)];
+  const sweep::Stage& warmup = plan.stages[static_cast<std::size_t>(choice.stage)];
   const TrainingConfig& training = learner.config.training;
   if (!training.own_warmups) return;
   if (warmup.missions / training.seeds < kFewestMissions)
@@ -86,4 +87,4 @@ void CheckWarmup(const SweepPlan& plan, const Stage& stage, const Arm& learner) 
                     who, warmup.name));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -5,7 +5,7 @@
 #include "engine/core/check.h"
 #include "engine/core/sha256.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 std::vector<std::string> ColumnsIn(Connection& database, const std::string& table) {
@@ -17,9 +17,9 @@ std::vector<std::string> ColumnsIn(Connection& database, const std::string& tabl
   return names;
 }
 
-std::vector<KeptTimesteps> KeptIn(Connection& database) {
+std::vector<sweep::KeptTimesteps> KeptIn(Connection& database) {
   Statement plan(database, "SELECT value FROM recipe WHERE key = 'plan'");
-  return plan.Step() ? ReadKeptTimesteps(plan.Text(0)) : std::vector<KeptTimesteps>();
+  return plan.Step() ? sweep::ReadKeptTimesteps(plan.Text(0)) : std::vector<sweep::KeptTimesteps>();
 }
 
 std::string Sha256Of(std::string_view bytes) {
@@ -43,27 +43,29 @@ RecordTables::RecordTables(Connection& database)
                       database.file(), unknown));
 }
 
-KeptTimesteps RecordTables::KeptOf(int stage) const {
+sweep::KeptTimesteps RecordTables::KeptOf(int stage) const {
   const auto s = static_cast<std::size_t>(stage);
-  return s < kept_.size() ? kept_[s] : KeptTimesteps::kAll;
+  return s < kept_.size() ? kept_[s] : sweep::KeptTimesteps::kAll;
 }
 
-bool RecordTables::KeepsTimesteps(int stage, const MissionRecord& record) const {
-  const KeptTimesteps kept = KeptOf(stage);
-  if (kept == KeptTimesteps::kFailed) return record.outcome != static_cast<std::int64_t>(Outcome::kSuccess);
-  return kept == KeptTimesteps::kAll;
+bool RecordTables::KeepsTimesteps(int stage, const mission::MissionRecord& record) const {
+  const sweep::KeptTimesteps kept = KeptOf(stage);
+  if (kept == sweep::KeptTimesteps::kFailed)
+    return record.outcome != static_cast<std::int64_t>(mission::Outcome::kSuccess);
+  return kept == sweep::KeptTimesteps::kAll;
 }
 
-std::string RecordTables::StepsChecksum(const std::vector<TimestepRecord>& steps) const {
+std::string RecordTables::StepsChecksum(const std::vector<mission::TimestepRecord>& steps) const {
   std::string bytes;
   AppendText(bytes, timesteps_.names());
   AppendInt(bytes, static_cast<std::int64_t>(steps.size()));
-  for (const TimestepRecord& step : steps) timesteps_.Append(bytes, step);
+  for (const mission::TimestepRecord& step : steps) timesteps_.Append(bytes, step);
   return Sha256Of(bytes);
 }
 
-std::string RecordTables::MissionChecksum(const RunLayout& layout, const RunId& id,
-                                          const MissionRecord& record, const std::string& steps) const {
+std::string RecordTables::MissionChecksum(const RunLayout& layout, const sweep::RunId& id,
+                                          const mission::MissionRecord& record,
+                                          const std::string& steps) const {
   const RunLayout::Stage& stage = layout.stages.at(static_cast<std::size_t>(id.stage));
   std::string bytes;
   AppendText(bytes, stage.name);
@@ -75,9 +77,10 @@ std::string RecordTables::MissionChecksum(const RunLayout& layout, const RunId& 
   return Sha256Of(bytes);
 }
 
-Checksums RecordTables::Of(const RunLayout& layout, const RunId& id, const MissionRecord& record) const {
+Checksums RecordTables::Of(const RunLayout& layout, const sweep::RunId& id,
+                           const mission::MissionRecord& record) const {
   const std::string steps = StepsChecksum(record.steps);
   return {MissionChecksum(layout, id, record, steps), steps};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

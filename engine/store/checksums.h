@@ -13,7 +13,7 @@
 #include "engine/store/sqlite.h"
 #include "engine/sweep/kept_timesteps.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 struct Checksums {
   std::string mission, steps;
@@ -27,26 +27,26 @@ class RecordTables {
   // UserError for a file with a column that this code does not know.
   explicit RecordTables(Connection& database);
 
-  const StoredColumns<MissionRecord>& missions() const { return missions_; }
-  const StoredColumns<TimestepRecord>& timesteps() const { return timesteps_; }
+  const StoredColumns<mission::MissionRecord>& missions() const { return missions_; }
+  const StoredColumns<mission::TimestepRecord>& timesteps() const { return timesteps_; }
   bool complete() const { return missions_.complete() && timesteps_.complete(); }
   // False in a file of format 1, whose missions have no checksums.
   bool checked() const { return checked_; }
 
-  KeptTimesteps KeptOf(int stage) const;
+  sweep::KeptTimesteps KeptOf(int stage) const;
   // Whether the timesteps of this mission of the stage are in the file. Its checksums are over them in any case.
-  bool KeepsTimesteps(int stage, const MissionRecord& record) const;
+  bool KeepsTimesteps(int stage, const mission::MissionRecord& record) const;
 
-  std::string StepsChecksum(const std::vector<TimestepRecord>& steps) const;
-  std::string MissionChecksum(const RunLayout& layout, const RunId& id, const MissionRecord& record,
-                              const std::string& steps) const;
-  Checksums Of(const RunLayout& layout, const RunId& id, const MissionRecord& record) const;
+  std::string StepsChecksum(const std::vector<mission::TimestepRecord>& steps) const;
+  std::string MissionChecksum(const RunLayout& layout, const sweep::RunId& id,
+                              const mission::MissionRecord& record, const std::string& steps) const;
+  Checksums Of(const RunLayout& layout, const sweep::RunId& id, const mission::MissionRecord& record) const;
 
  private:
   bool checked_;
-  std::vector<KeptTimesteps> kept_;  // by stage
-  StoredColumns<MissionRecord> missions_;
-  StoredColumns<TimestepRecord> timesteps_;
+  std::vector<sweep::KeptTimesteps> kept_;  // by stage
+  StoredColumns<mission::MissionRecord> missions_;
+  StoredColumns<mission::TimestepRecord> timesteps_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::store

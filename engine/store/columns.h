@@ -21,7 +21,7 @@
 
 #include "engine/store/sqlite.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 // The value that comes back when `value` was stored.
 inline double Canonical(double value) {
@@ -180,4 +180,4 @@ class StoredColumns {
   std::vector<std::size_t> order_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::store

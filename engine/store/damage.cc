@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 void AddLonelyTimesteps(Connection& database, const RunLayout& layout, std::vector<DamagedMission>& found) {
@@ -42,4 +42,4 @@ void RemoveMissions(Connection& database, const std::vector<DamagedMission>& mis
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -7,7 +7,7 @@
 #include "engine/store/records.h"
 #include "engine/store/sqlite.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 // Every mission that does not match its checksums or is not in the plan, timesteps without a mission, and failures that
 // are not in the plan; by key. Reads everything.
@@ -16,4 +16,4 @@ std::vector<DamagedMission> FindDamage(Connection& database, const RunLayout& la
 // Deletes all that the file holds of these missions, so that they count as missing.
 void RemoveMissions(Connection& database, const std::vector<DamagedMission>& missions);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -8,7 +8,7 @@
 #include "engine/store/columns.h"
 #include "engine/store/reader.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 template <class Record>
@@ -52,7 +52,7 @@ std::optional<FirstDifference> Compare(const std::string& mission, const StoredM
                                        const StoredMission& stored_there) {
   if (!stored_here.keeps_timesteps || !stored_there.keeps_timesteps)
     return CompareByChecksum(mission, stored_here, stored_there);
-  const MissionRecord &here = stored_here.record, &there = stored_there.record;
+  const mission::MissionRecord &here = stored_here.record, &there = stored_there.record;
   FirstDifference found{.mission = mission, .timestep = 0, .quantity = "", .here = "", .there = ""};
   const std::size_t both = std::min(here.steps.size(), there.steps.size());
   for (std::size_t i = 0; i < both; ++i) {
@@ -129,4 +129,4 @@ RunDifference DiffRuns(ResultReader& here, ResultReader& there) {
   return difference;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace ed3r {
+namespace ed3r::store {
 
 class ResultReader;
 
@@ -28,4 +28,4 @@ struct RunDifference {
 // compared where they have arms in common; those of arms that one run lacks are left out.
 RunDifference DiffRuns(ResultReader& here, ResultReader& there);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

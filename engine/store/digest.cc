@@ -6,7 +6,7 @@
 #include "engine/store/columns.h"
 #include "engine/store/reader.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 std::string BytesOfFormat1(const ResultReader& reader, const StoredMission& mission) {
@@ -17,21 +17,22 @@ std::string BytesOfFormat1(const ResultReader& reader, const StoredMission& miss
   AppendInt(bytes, mission.id.mission);
   reader.Tables().missions().Append(bytes, mission.record);
   AppendInt(bytes, static_cast<std::int64_t>(mission.record.steps.size()));
-  for (const TimestepRecord& step : mission.record.steps) reader.Tables().timesteps().Append(bytes, step);
+  for (const mission::TimestepRecord& step : mission.record.steps)
+    reader.Tables().timesteps().Append(bytes, step);
   return bytes;
 }
 
 }  // namespace
 
-std::string CanonicalBytes(const MissionRecord& record) {
+std::string CanonicalBytes(const mission::MissionRecord& record) {
   std::string bytes;
   AppendColumns(bytes, record);
   AppendInt(bytes, static_cast<std::int64_t>(record.steps.size()));
-  for (const TimestepRecord& step : record.steps) AppendColumns(bytes, step);
+  for (const mission::TimestepRecord& step : record.steps) AppendColumns(bytes, step);
   return bytes;
 }
 
-std::string DigestOf(const MissionRecord& record) {
+std::string DigestOf(const mission::MissionRecord& record) {
   Sha256 sha;
   sha.Update(CanonicalBytes(record));
   return sha.Hex();
@@ -52,4 +53,4 @@ std::string DigestOf(ResultReader& reader) {
   return sha.Hex();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

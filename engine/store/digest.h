@@ -6,17 +6,17 @@
 
 #include "engine/mission/record.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 class ResultReader;
 
 // The bytes of one record with its timesteps that enter a digest: each column by Describe(), eight bytes,
 // least significant first. Two records are identical when these are. The same before storing and after
 // reading back.
-std::string CanonicalBytes(const MissionRecord& record);
+std::string CanonicalBytes(const mission::MissionRecord& record);
 
 // SHA-256 of CanonicalBytes in hexadecimal.
-std::string DigestOf(const MissionRecord& record);
+std::string DigestOf(const mission::MissionRecord& record);
 
 // SHA-256 of everything stored: the format's name; then each finished mission's checksum (checksums.h, hexadecimal), by
 // stage, arm and mission, each compared with what it is the checksum of. Failures, sessions and timings are not part of
@@ -24,4 +24,4 @@ std::string DigestOf(const MissionRecord& record);
 // and arm, its number, its columns and its timesteps by k, so that they keep the digest with which they were published.
 std::string DigestOf(ResultReader& reader);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -11,7 +11,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 // O_CLOEXEC: a program that this process starts must not keep the lock when the process is gone.
@@ -47,4 +47,4 @@ DirectoryLock::~DirectoryLock() {
 DirectoryLock::DirectoryLock(DirectoryLock&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)) {}
 
-}  // namespace ed3r
+}  // namespace ed3r::store

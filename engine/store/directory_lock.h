@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace ed3r {
+namespace ed3r::store {
 
 class DirectoryLock {
  public:
@@ -28,4 +28,4 @@ struct DirectoryLock::Attempt {
   bool supported = true;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::store

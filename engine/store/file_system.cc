@@ -13,7 +13,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 // Magic numbers of statfs(2) and of the clients' own headers.
@@ -51,4 +51,4 @@ bool IsSharedFileSystem(const std::string& dir) {
   return std::find(std::begin(kShared), std::end(kShared), type) != std::end(kShared);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -14,7 +14,7 @@
 #include "engine/store/schema.h"
 #include "engine/store/sqlite.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -101,4 +101,4 @@ std::optional<FinishedRun> RecallFinished(const std::string& dir, const std::str
   return FinishedRun{made_by, select.Int(2), select.Text(3), select.Text(4)};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

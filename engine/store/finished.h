@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-namespace ed3r {
+namespace ed3r::store {
 
 struct FinishedRun {
   std::string made_by;  // names the program
@@ -24,4 +24,4 @@ void RememberFinished(const std::string& dir, const FinishedRun& run);
 // Nothing where the file was touched, made by another program, or never remembered.
 std::optional<FinishedRun> RecallFinished(const std::string& dir, const std::string& made_by);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -14,11 +14,11 @@
 #include "engine/sweep/arm_id.h"
 #include "engine/sweep/plan_text.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
-using PlanStage = WrittenPlan::Stage;
-using PlanArm = WrittenPlan::Arm;
+using PlanStage = sweep::WrittenPlan::Stage;
+using PlanArm = sweep::WrittenPlan::Arm;
 
 // Tables with a column `run`.
 constexpr const char* kTablesByRun[] = {"missions", "timesteps", "failures", "timings", "flown_networks"};
@@ -43,7 +43,7 @@ std::string SettingDifference(const PlanArm& there, const PlanArm& here) {
   return "";
 }
 
-bool SamePrecision(const std::optional<Precision>& a, const std::optional<Precision>& b) {
+bool SamePrecision(const std::optional<sweep::Precision>& a, const std::optional<sweep::Precision>& b) {
   if (!a || !b) return a.has_value() == b.has_value();
   return a->metric == b->metric && a->half_width == b->half_width && a->every == b->every;
 }
@@ -69,7 +69,7 @@ std::string StageDifference(const PlanStage& there, const PlanStage& here) {
 }
 
 // Stages that a stage builds on, directly or not. A stage stands behind those.
-std::set<std::string> Foundations(const WrittenPlan& plan, const PlanStage& stage) {
+std::set<std::string> Foundations(const sweep::WrittenPlan& plan, const PlanStage& stage) {
   std::set<std::string> found(stage.after.begin(), stage.after.end());
   for (auto it = plan.stages.rbegin(); it != plan.stages.rend(); ++it)
     if (found.contains(it->name)) found.insert(it->after.begin(), it->after.end());
@@ -77,17 +77,17 @@ std::set<std::string> Foundations(const WrittenPlan& plan, const PlanStage& stag
 }
 
 // Whether networks of `learner` may learn from missions of `stage`.
-bool LearnsFrom(const WrittenPlan& plan, const PlanStage& learner, const PlanStage& stage) {
+bool LearnsFrom(const sweep::WrittenPlan& plan, const PlanStage& learner, const PlanStage& stage) {
   const std::set<std::string> foundations = Foundations(plan, learner);
-  return stage.kind == StageKind::kFly && foundations.contains(stage.name) &&
+  return stage.kind == sweep::StageKind::kFly && foundations.contains(stage.name) &&
          std::any_of(plan.stages.begin(), plan.stages.end(), [&](const PlanStage& training) {
-           return training.kind == StageKind::kTrain && foundations.contains(training.name) &&
+           return training.kind == sweep::StageKind::kTrain && foundations.contains(training.name) &&
                   Foundations(plan, training).contains(stage.name);
          });
 }
 
 // Networks learn from the first arm that flies their strategy in their variant: "STAGE/ARM" by strategy and variant.
-std::map<std::pair<std::string, std::string>, std::string> Teachers(const WrittenPlan& plan,
+std::map<std::pair<std::string, std::string>, std::string> Teachers(const sweep::WrittenPlan& plan,
                                                                     const PlanStage& learner) {
   std::map<std::pair<std::string, std::string>, std::string> teachers;
   for (const PlanStage& stage : plan.stages) {
@@ -95,14 +95,16 @@ std::map<std::pair<std::string, std::string>, std::string> Teachers(const Writte
     for (const PlanArm& arm : stage.arms) {
       const auto strategy = arm.settings.find("mission.strategy");
       if (strategy != arm.settings.end())
-        teachers.try_emplace({strategy->second, ArmId::Of(arm.name).variant}, stage.name + '/' + arm.name);
+        teachers.try_emplace({strategy->second, sweep::ArmId::Of(arm.name).variant},
+                             stage.name + '/' + arm.name);
     }
   }
   return teachers;
 }
 
 // What would have the networks of `learner` learn from other missions. The stages are known to be the same.
-std::string LessonDifference(const WrittenPlan& there, const WrittenPlan& here, std::size_t learner) {
+std::string LessonDifference(const sweep::WrittenPlan& there, const sweep::WrittenPlan& here,
+                             std::size_t learner) {
   const PlanStage& stage = there.stages[learner];
   for (std::size_t s = 0; s < learner; ++s) {
     const PlanStage &was = there.stages[s], &is = here.stages[s];
@@ -120,7 +122,7 @@ std::string LessonDifference(const WrittenPlan& there, const WrittenPlan& here, 
   return "";
 }
 
-std::string PlanDifference(const WrittenPlan& there, const WrittenPlan& here,
+std::string PlanDifference(const sweep::WrittenPlan& there, const sweep::WrittenPlan& here,
                            const std::set<std::string>& learned) {
   if (there.name != here.name)
     return fmt::format("the sweep is called {} there and {} here", there.name, here.name);
@@ -136,7 +138,7 @@ std::string PlanDifference(const WrittenPlan& there, const WrittenPlan& here,
   return "";
 }
 
-std::string Added(const WrittenPlan& there, const WrittenPlan& here) {
+std::string Added(const sweep::WrittenPlan& there, const sweep::WrittenPlan& here) {
   constexpr std::size_t kMostTold = 3;
   std::vector<std::string> parts;
   for (std::size_t s = 0; s < there.stages.size(); ++s) {
@@ -181,7 +183,8 @@ void Renumber(Connection& database, const char* table, const std::vector<std::in
 }  // namespace
 
 Growth GrowthOf(const Recipe& there, const Recipe& here, const std::set<std::string>& learned) {
-  const WrittenPlan was = ReadPlanText(there.plan_text), is = ReadPlanText(here.plan_text);
+  const sweep::WrittenPlan was = sweep::ReadPlanText(there.plan_text),
+                           is = sweep::ReadPlanText(here.plan_text);
   if (was.stages.empty() || is.stages.empty()) return {Difference(there, here).value_or(""), ""};
   Growth growth{PlanDifference(was, is, learned), ""};
   for (const auto& [name, fingerprint] : there.inputs) {
@@ -210,4 +213,4 @@ void Grow(Connection& database, const Recipe& recipe, const RunLayout& layout) {
   ReplaceRecipe(database, recipe, layout);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

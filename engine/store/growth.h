@@ -9,7 +9,7 @@
 #include "engine/store/recipe.h"
 #include "engine/store/sqlite.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 // How the plan of a run becomes another one.
 struct Growth {
@@ -30,4 +30,4 @@ std::set<std::string> LearnedStages(Connection& database, const RunLayout& layou
 // Gives the file the grown plan and its missions the numbers that their arms have in it. Call it in a transaction.
 void Grow(Connection& database, const Recipe& recipe, const RunLayout& layout);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -8,7 +8,7 @@
 
 #include "engine/sweep/plan.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 struct RunLayout {
   struct Arm {
@@ -32,19 +32,19 @@ struct RunLayout {
   std::int64_t Missions() const;
   // Number of an arm counted over all stages: the key `run` of the tables. InternalError when there is none.
   std::int64_t RunIndex(int stage, int arm) const;
-  std::int64_t RunIndex(const RunId& id) const;
+  std::int64_t RunIndex(const sweep::RunId& id) const;
   // Number of a mission counted over all stages and arms, in plan order.
-  std::int64_t LinearIndex(const RunId& id) const;
-  bool Contains(const RunId& id) const;
-  std::int64_t Scenario(const RunId& id) const;
+  std::int64_t LinearIndex(const sweep::RunId& id) const;
+  bool Contains(const sweep::RunId& id) const;
+  std::int64_t Scenario(const sweep::RunId& id) const;
   // The mission that the tables keep under these keys; none where the plan has no such mission.
-  std::optional<RunId> Place(std::int64_t run, std::int64_t mission) const;
+  std::optional<sweep::RunId> Place(std::int64_t run, std::int64_t mission) const;
   // "stage online, arm rbs, mission 12"
-  std::string Describe(const RunId& id) const;
+  std::string Describe(const sweep::RunId& id) const;
   // The same for keys that need not be in the plan: "run 99, mission 12" where there is no such arm.
   std::string DescribeKeys(std::int64_t run, std::int64_t mission) const;
 };
 
-RunLayout LayoutOf(const SweepPlan& plan);
+RunLayout LayoutOf(const sweep::SweepPlan& plan);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -16,7 +16,7 @@
 #include "engine/store/schema.h"
 #include "engine/store/store_file.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 // Sources that are read side by side: each keeps a file open and a few megabytes. Read so, their missions come in plan order,
@@ -95,7 +95,7 @@ class Target {
   }
 
   void AddMission(const std::string& from, const MissionCursor& mission) {
-    const RunId id = mission.Checked();
+    const sweep::RunId id = mission.Checked();
     if (cursor_.Seek(mission.run(), mission.mission())) {
       cursor_.Checked();
       if (CanonicalBytes(cursor_.record()) != CanonicalBytes(mission.record()) ||
@@ -137,7 +137,8 @@ class Target {
 void CheckSameRecipe(const ResultReader& first, const ResultReader& other) {
   const std::vector<RunLayout::Stage>& stages = other.Layout().stages;
   for (std::size_t s = 0; s < stages.size(); ++s)
-    if (!other.Tables().complete() && other.Tables().KeptOf(static_cast<int>(s)) != KeptTimesteps::kAll)
+    if (!other.Tables().complete() &&
+        other.Tables().KeptOf(static_cast<int>(s)) != sweep::KeptTimesteps::kAll)
       throw UserError(
           fmt::format("{}: written by an older ed3r without the timesteps of stage {}, of which their new "
                       "checksums would be made: it can be read, but not merged",
@@ -202,4 +203,4 @@ MergeSummary MergeStores(const std::string& out, const std::vector<std::string>&
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

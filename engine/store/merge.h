@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::store {
 
 struct MergeSummary {
   std::int64_t added = 0;    // missions copied
@@ -19,4 +19,4 @@ struct MergeSummary {
 // `out` is then as it was before.
 MergeSummary MergeStores(const std::string& out, const std::vector<std::string>& dirs);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -7,7 +7,7 @@
 #include "engine/core/check.h"
 #include "engine/core/sha256.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 // Stage and arm of a run; none where the layout has no such run.
@@ -80,4 +80,4 @@ FlownNetworks ReadNetworks(Connection& database, const RunLayout& layout) {
   return networks;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -9,7 +9,7 @@
 #include "engine/store/layout.h"
 #include "engine/store/sqlite.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 struct NetworkFile {
   std::string name;   // for people
@@ -34,4 +34,4 @@ void PutNetworks(Connection& database, const RunLayout& layout, const FlownNetwo
 // None in files of format 1. UserError when the tables do not fit together.
 FlownNetworks ReadNetworks(Connection& database, const RunLayout& layout);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -16,7 +16,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -143,4 +143,4 @@ void OwnerFile::Renew() {
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

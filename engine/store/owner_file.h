@@ -17,7 +17,7 @@
 #include <string>
 #include <thread>
 
-namespace ed3r {
+namespace ed3r::store {
 
 inline constexpr char kOwnerFile[] = "results.owner";
 inline constexpr std::chrono::seconds kOwnerRenewed{15};
@@ -47,4 +47,4 @@ class OwnerFile {
   std::thread renewer_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -14,7 +14,7 @@
 #include "engine/store/sqlite_errors.h"
 #include "engine/store/store_file.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 std::string ExistingFile(const std::string& dir) {
@@ -53,7 +53,7 @@ std::vector<InputFile> ResultReader::Files() { return ReadFiles(database_); }
 
 FlownNetworks ResultReader::Networks() { return ReadNetworks(database_, layout_); }
 
-std::vector<RunId> ResultReader::Stored() { return ReadStored(database_, layout_); }
+std::vector<sweep::RunId> ResultReader::Stored() { return ReadStored(database_, layout_); }
 
 std::int64_t ResultReader::CountMissions() {
   return database_.Int("SELECT count(*) FROM missions NOT INDEXED");
@@ -67,7 +67,7 @@ std::vector<ArmStatus> ResultReader::Status() {
       status.push_back({.stage = stage.name, .arm = arm.name, .planned = stage.missions});
   MissionCursor cursor(database_, layout_, "", Steps::kSkip);
   while (cursor.Next()) {
-    const std::optional<RunId> id = layout_.Place(cursor.run(), cursor.mission());
+    const std::optional<sweep::RunId> id = layout_.Place(cursor.run(), cursor.mission());
     if (!id) continue;  // FindDamage() tells
     ArmStatus& arm = status[static_cast<std::size_t>(layout_.RunIndex(*id))];
     ++arm.done;
@@ -123,28 +123,28 @@ void ResultReader::Visit(const std::string& where, Steps steps, const MissionVis
 }
 
 void ResultReader::NeedTimesteps(int stage) const {
-  const KeptTimesteps kept = tables_->KeptOf(stage);
-  if (kept == KeptTimesteps::kAll) return;
+  const sweep::KeptTimesteps kept = tables_->KeptOf(stage);
+  if (kept == sweep::KeptTimesteps::kAll) return;
   throw UserError(
       fmt::format("{}: stage {}: the timesteps are needed, and its sweep says store: {{timesteps: {}}}; fly "
                   "it into another --out with store: {{timesteps: all}}",
                   dir_, layout_.stages.at(static_cast<std::size_t>(stage)).name, NameOf(kept)));
 }
 
-bool ResultReader::IsStored(const MissionRecord& flown, const StoredMission& stored) const {
+bool ResultReader::IsStored(const mission::MissionRecord& flown, const StoredMission& stored) const {
   if (stored.keeps_timesteps) return DigestOf(flown) == DigestOf(stored.record);
   return tables_->Of(layout_, stored.id, flown) == Checksums{stored.checksum, stored.steps_checksum};
 }
 
 void ResultReader::ForEachTimestep(int stage, int arm,
-                                   const std::function<void(int, const TimestepRecord&)>& visit) {
+                                   const std::function<void(int, const mission::TimestepRecord&)>& visit) {
   NeedTimesteps(stage);
   ForEachMission(stage, arm, Steps::kLoad, [&](const StoredMission& mission) {
-    for (const TimestepRecord& step : mission.record.steps) visit(mission.id.mission, step);
+    for (const mission::TimestepRecord& step : mission.record.steps) visit(mission.id.mission, step);
   });
 }
 
-StoredMission ResultReader::LoadMission(const RunId& id) {
+StoredMission ResultReader::LoadMission(const sweep::RunId& id) {
   if (!layout_.Contains(id))
     throw UserError(fmt::format("{}: no mission {} of arm {} of stage {} in the plan", dir_, id.mission,
                                 id.arm, id.stage));
@@ -162,7 +162,7 @@ void ResultReader::CheckWhole() {
 
 std::vector<DamagedMission> ResultReader::FindDamage() {
   const Transaction moment(database_, Transaction::Kind::kRead);
-  return ed3r::FindDamage(database_, layout_);
+  return ed3r::store::FindDamage(database_, layout_);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

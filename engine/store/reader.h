@@ -20,11 +20,11 @@
 #include "engine/store/records.h"
 #include "engine/store/sqlite.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 struct StoredMission {
-  RunId id;
-  MissionRecord record;
+  sweep::RunId id;
+  mission::MissionRecord record;
   std::int64_t session = 0;  // who flew it
   double wall_s = 0;         // and how long that took
   std::string checksum;      // see checksums.h; "" in files of format 1
@@ -66,7 +66,7 @@ class ResultReader {
   // The columns that the file has.
   const RecordTables& Tables() const { return *tables_; }
 
-  std::vector<RunId> Stored();
+  std::vector<sweep::RunId> Stored();
   std::int64_t CountMissions();     // rows, whatever is in them
   std::vector<ArmStatus> Status();  // counts keys alone: FindDamage() compares what they hold
   std::vector<FailedMission> Failures();
@@ -84,14 +84,14 @@ class ResultReader {
 
   // Whether a flight is the stored one, timesteps included, wherever those are kept or not. `stored` has been loaded with
   // its timesteps.
-  bool IsStored(const MissionRecord& flown, const StoredMission& stored) const;
+  bool IsStored(const mission::MissionRecord& flown, const StoredMission& stored) const;
 
   // Every timestep of one arm, for training and pooled figures. UserError where some are not stored.
   void ForEachTimestep(int stage, int arm,
-                       const std::function<void(int mission, const TimestepRecord&)>& visit);
+                       const std::function<void(int mission, const mission::TimestepRecord&)>& visit);
 
   // With timesteps. UserError when it is not in the plan, or not stored (yet, or because it failed).
-  StoredMission LoadMission(const RunId& id);
+  StoredMission LoadMission(const sweep::RunId& id);
 
   // UserError that names the first damaged mission of all that is stored.
   void CheckWhole();
@@ -110,4 +110,4 @@ class ResultReader {
   Recipe recipe_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 // Takes the first line off `text`.
@@ -75,4 +75,4 @@ std::optional<std::string> Difference(const Recipe& there, const Recipe& here) {
   return std::nullopt;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

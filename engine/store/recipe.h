@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::store {
 
 // The code that decided results, by subsystem ("flight", "training"): one identity, or several where a run was continued
 // by other code on purpose. Files of format 1 know one subsystem, "sources".
@@ -55,4 +55,4 @@ std::optional<std::string> Difference(const Recipe& there, const Recipe& here);
 // Likewise for the code: a subsystem of `here` whose identity is not among those of `there`, or that `there` lacks.
 std::optional<std::string> CodeDifference(const CodeIdentities& there, const CodeIdentities& here);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

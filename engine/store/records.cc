@@ -7,7 +7,7 @@
 #include "engine/core/check.h"
 #include "engine/store/columns.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 RecordWriter::RecordWriter(Connection& database, const RunLayout& layout)
     : layout_(layout),
@@ -15,34 +15,35 @@ RecordWriter::RecordWriter(Connection& database, const RunLayout& layout)
       insert_mission_(
           database,
           fmt::format("INSERT INTO missions (run, mission, checksum, steps_checksum, {}) VALUES ({})",
-                      ColumnNames<MissionRecord>(), Placeholders<MissionRecord>(4))),
+                      ColumnNames<mission::MissionRecord>(), Placeholders<mission::MissionRecord>(4))),
       insert_step_(database, fmt::format("INSERT INTO timesteps (run, mission, {}) VALUES ({})",
-                                         ColumnNames<TimestepRecord>(), Placeholders<TimestepRecord>(2))),
+                                         ColumnNames<mission::TimestepRecord>(),
+                                         Placeholders<mission::TimestepRecord>(2))),
       insert_timing_(database, "INSERT OR REPLACE INTO timings VALUES (?, ?, ?, ?)"),
       insert_failure_(database,
                       "INSERT OR REPLACE INTO failures (run, mission, scenario, seed, kind, message) "
                       "VALUES (?, ?, ?, ?, ?, ?)"),
       delete_failure_(database, "DELETE FROM failures WHERE run = ? AND mission = ?") {}
 
-void RecordWriter::InsertMission(const RunId& id, const MissionRecord& record) {
+void RecordWriter::InsertMission(const sweep::RunId& id, const mission::MissionRecord& record) {
   CheckStorable(record);
   InsertRecord(id, record, tables_.StepsChecksum(record.steps));
   if (!tables_.KeepsTimesteps(id.stage, record)) return;
   insert_step_.Bind(0, layout_.RunIndex(id));
   insert_step_.Bind(1, std::int64_t{id.mission});
-  for (const TimestepRecord& step : record.steps) {
+  for (const mission::TimestepRecord& step : record.steps) {
     BindColumns(insert_step_, 2, step);
     insert_step_.Run();
   }
 }
 
-void RecordWriter::InsertWithoutTimesteps(const RunId& id, const MissionRecord& record,
+void RecordWriter::InsertWithoutTimesteps(const sweep::RunId& id, const mission::MissionRecord& record,
                                           const std::string& steps_checksum) {
   ED3R_CHECK(!tables_.KeepsTimesteps(id.stage, record), layout_.Describe(id));
   InsertRecord(id, record, steps_checksum);
 }
 
-void RecordWriter::InsertRecord(const RunId& id, const MissionRecord& record,
+void RecordWriter::InsertRecord(const sweep::RunId& id, const mission::MissionRecord& record,
                                 const std::string& steps_checksum) {
   const std::int64_t run = layout_.RunIndex(id), mission = id.mission;
   insert_mission_.Bind(0, run);
@@ -54,17 +55,17 @@ void RecordWriter::InsertRecord(const RunId& id, const MissionRecord& record,
   delete_failure_.Run(run, mission);
 }
 
-void RecordWriter::InsertTiming(const RunId& id, std::int64_t session, double wall_s) {
+void RecordWriter::InsertTiming(const sweep::RunId& id, std::int64_t session, double wall_s) {
   insert_timing_.Run(layout_.RunIndex(id), std::int64_t{id.mission}, session, wall_s);
 }
 
-void RecordWriter::InsertFailure(const RunId& id, std::int64_t scenario, std::uint64_t seed,
+void RecordWriter::InsertFailure(const sweep::RunId& id, std::int64_t scenario, std::uint64_t seed,
                                  const Failure& failure) {
   insert_failure_.Run(layout_.RunIndex(id), std::int64_t{id.mission}, scenario,
                       static_cast<std::int64_t>(seed), failure.kind, failure.message);
 }
 
-void CheckStorable(const MissionRecord& record) {
+void CheckStorable(const mission::MissionRecord& record) {
   for (std::size_t i = 1; i < record.steps.size(); ++i)
     ED3R_CHECK(record.steps[i - 1].k < record.steps[i].k,
                fmt::format("timestep {} follows timestep {}", record.steps[i].k, record.steps[i - 1].k));
@@ -89,7 +90,7 @@ std::vector<FailedMission> ReadFailures(Connection& database, const RunLayout& l
                                with_kind ? "kind" : "''"));
   std::vector<FailedMission> failures;
   while (select.Step()) {
-    const std::optional<RunId> id = layout.Place(select.Int(0), select.Int(1));
+    const std::optional<sweep::RunId> id = layout.Place(select.Int(0), select.Int(1));
     if (!id)
       throw UserError(DamageText(
           database.file(), {select.Int(0), select.Int(1), layout.DescribeKeys(select.Int(0), select.Int(1)),
@@ -140,7 +141,7 @@ void MissionCursor::Load() {
     select_steps_.Reset();
   }
   damage_ = {run(), mission(), "", ""};
-  const std::optional<RunId> place = layout_.Place(run(), mission());
+  const std::optional<sweep::RunId> place = layout_.Place(run(), mission());
   if (!place) {
     damage_.name = layout_.DescribeKeys(run(), mission());
     damage_.what = "the plan has no such mission";
@@ -151,7 +152,7 @@ void MissionCursor::Load() {
   if (Damaged()) damage_.name = layout_.Describe(id_);
 }
 
-std::string MissionCursor::WhatIsWrong(const RunId& id) const {
+std::string MissionCursor::WhatIsWrong(const sweep::RunId& id) const {
   if (!tables_.checked()) return "";
   if (tables_.MissionChecksum(layout_, id, record_, steps_checksum_) != checksum_)
     return "its record does not match its checksum";
@@ -163,9 +164,9 @@ std::string MissionCursor::WhatIsWrong(const RunId& id) const {
   return "";
 }
 
-RunId MissionCursor::Checked() const {
+sweep::RunId MissionCursor::Checked() const {
   if (Damaged()) throw UserError(DamageText(database_.file(), damage_));
   return id_;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

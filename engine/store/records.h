@@ -10,10 +10,10 @@
 #include "engine/store/layout.h"
 #include "engine/store/sqlite.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 // InternalError unless the timesteps are numbered upwards, which their key needs.
-void CheckStorable(const MissionRecord& record);
+void CheckStorable(const mission::MissionRecord& record);
 
 // Why a mission has no record. `kind` groups failures: the name of an Invariant, or a word of the scheduler's; "" where a
 // file does not tell.
@@ -27,16 +27,18 @@ class RecordWriter {
   RecordWriter(Connection& database, const RunLayout& layout);
 
   // Takes a failure of the same mission away: it has been flown now.
-  void InsertMission(const RunId& id, const MissionRecord& record);
+  void InsertMission(const sweep::RunId& id, const mission::MissionRecord& record);
   // One whose timesteps were not kept, by the checksum of those that it had. InternalError where they are kept.
-  void InsertWithoutTimesteps(const RunId& id, const MissionRecord& record,
+  void InsertWithoutTimesteps(const sweep::RunId& id, const mission::MissionRecord& record,
                               const std::string& steps_checksum);
-  void InsertTiming(const RunId& id, std::int64_t session, double wall_s);
+  void InsertTiming(const sweep::RunId& id, std::int64_t session, double wall_s);
   // Replaces an older failure of the same mission.
-  void InsertFailure(const RunId& id, std::int64_t scenario, std::uint64_t seed, const Failure& failure);
+  void InsertFailure(const sweep::RunId& id, std::int64_t scenario, std::uint64_t seed,
+                     const Failure& failure);
 
  private:
-  void InsertRecord(const RunId& id, const MissionRecord& record, const std::string& steps_checksum);
+  void InsertRecord(const sweep::RunId& id, const mission::MissionRecord& record,
+                    const std::string& steps_checksum);
 
   const RunLayout& layout_;
   RecordTables tables_;
@@ -44,7 +46,7 @@ class RecordWriter {
 };
 
 struct FailedMission {
-  RunId id;
+  sweep::RunId id;
   std::int64_t scenario = 0;
   std::uint64_t seed = 0;
   std::string kind, message;  // as of Failure
@@ -86,29 +88,29 @@ class MissionCursor {
   const std::string& steps_checksum() const { return steps_checksum_; }
   // Whether its timesteps are in the file, whether or not they are loaded.
   bool KeepsTimesteps() const { return tables_.KeepsTimesteps(id_.stage, record_); }
-  const MissionRecord& record() const { return record_; }
+  const mission::MissionRecord& record() const { return record_; }
 
   // What is wrong with the present mission, nothing when it is whole.
   bool Damaged() const { return !damage_.what.empty(); }
   const DamagedMission& damage() const { return damage_; }
   // The present mission's place in the plan. UserError with DamageText when it is damaged.
-  RunId Checked() const;
+  sweep::RunId Checked() const;
 
   static constexpr char kOneMission[] = "WHERE missions.run = ? AND missions.mission = ?";
 
  private:
   void Load();
-  std::string WhatIsWrong(const RunId& id) const;
+  std::string WhatIsWrong(const sweep::RunId& id) const;
 
   Connection& database_;
   const RunLayout& layout_;
   RecordTables tables_;
   bool with_steps_;
   Statement select_, select_steps_;
-  MissionRecord record_;
+  mission::MissionRecord record_;
   std::string checksum_, steps_checksum_;
   DamagedMission damage_;
-  RunId id_;
+  sweep::RunId id_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -10,7 +10,7 @@
 #include "engine/core/check.h"
 #include "engine/store/reader.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ std::string RestoredFiles::PathOf(const std::string& called) const {
                                     dir_, too_large_, beside.string()));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

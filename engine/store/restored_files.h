@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-namespace ed3r {
+namespace ed3r::store {
 
 class ResultReader;
 
@@ -33,4 +33,4 @@ class RestoredFiles {
   std::string sweep_file_;  // "" where no session tells
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::store

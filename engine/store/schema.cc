@@ -17,7 +17,7 @@
 #include "engine/store/records.h"
 #include "engine/store/words.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x45443352;  // "ED3R"
@@ -48,7 +48,8 @@ CREATE TABLE missions (run INTEGER, mission INTEGER, checksum TEXT NOT NULL, ste
   PRIMARY KEY (run, mission)) STRICT, WITHOUT ROWID;
 CREATE TABLE timesteps (run INTEGER, mission INTEGER, {}, PRIMARY KEY (run, mission, k)) STRICT, WITHOUT ROWID;
 )",
-                     ColumnDefinitions<MissionRecord>(), ColumnDefinitions<TimestepRecord>());
+                     ColumnDefinitions<mission::MissionRecord>(),
+                     ColumnDefinitions<mission::TimestepRecord>());
 }
 
 template <class Record>
@@ -179,7 +180,8 @@ void PutRecipe(Connection& database, const Recipe& recipe, const RunLayout& layo
 
 void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& layout) {
   database.Execute(TableDefinitions());
-  database.Execute(ViewDefinition<MissionRecord>("missions") + ViewDefinition<TimestepRecord>("timesteps"));
+  database.Execute(ViewDefinition<mission::MissionRecord>("missions") +
+                   ViewDefinition<mission::TimestepRecord>("timesteps"));
   CreateMissionsIndex(database);
   PutRecipe(database, recipe, layout);
   database.Execute(
@@ -273,11 +275,11 @@ RunLayout ReadLayout(Connection& database) {
   return layout;
 }
 
-std::vector<RunId> ReadStored(Connection& database, const RunLayout& layout) {
+std::vector<sweep::RunId> ReadStored(Connection& database, const RunLayout& layout) {
   Statement select(database, "SELECT run, mission FROM missions NOT INDEXED ORDER BY run, mission");
-  std::vector<RunId> stored;
+  std::vector<sweep::RunId> stored;
   while (select.Step()) {
-    const std::optional<RunId> id = layout.Place(select.Int(0), select.Int(1));
+    const std::optional<sweep::RunId> id = layout.Place(select.Int(0), select.Int(1));
     if (!id)
       throw UserError(DamageText(
           database.file(), {select.Int(0), select.Int(1), layout.DescribeKeys(select.Int(0), select.Int(1)),
@@ -287,4 +289,4 @@ std::vector<RunId> ReadStored(Connection& database, const RunLayout& layout) {
   return stored;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -32,7 +32,7 @@
 #include "engine/store/recipe.h"
 #include "engine/store/sqlite.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 inline constexpr char kResultsFile[] = "results.sqlite";
 inline constexpr char kMissionsIndex[] = "missions_by_run";
@@ -68,6 +68,6 @@ Recipe ReadRecipe(Connection& database);  // without notes and files: notes belo
 std::vector<InputFile> ReadFiles(Connection& database);
 RunLayout ReadLayout(Connection& database);
 // Finished missions in plan order. UserError for one that is not in the plan.
-std::vector<RunId> ReadStored(Connection& database, const RunLayout& layout);
+std::vector<sweep::RunId> ReadStored(Connection& database, const RunLayout& layout);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -5,7 +5,7 @@
 
 #include "engine/store/schema.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,4 +36,4 @@ std::vector<std::string> ShardDirs(const std::string& run_dir) {
   return dirs;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::store {
 
 // Folders below RUN/shards with a results file that is not empty, in order of their names. None where there is no such
 // folder.
 std::vector<std::string> ShardDirs(const std::string& run_dir);
 std::vector<std::string> ShardDirs(const std::string& run_dir, const std::string& stage);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -15,7 +15,7 @@
 #include "engine/core/utf8.h"
 #include "engine/store/sqlite_errors.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 constexpr int kBusyTimeout_ms = 10000;
@@ -257,4 +257,4 @@ Transaction::~Transaction() {
 
 void Transaction::Commit() { connection_.Execute("COMMIT"); }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

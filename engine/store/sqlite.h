@@ -15,7 +15,7 @@
 struct sqlite3;
 struct sqlite3_stmt;
 
-namespace ed3r {
+namespace ed3r::store {
 
 // The disk or the machine failed, not the input.
 class StoreError : public std::runtime_error {
@@ -99,4 +99,4 @@ class Transaction {
   Connection& connection_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -4,7 +4,7 @@
 #include "engine/core/check.h"
 #include "engine/store/sqlite.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 // The file system cannot hold the shared memory that WAL mode needs.
 class SharedMemoryError : public StoreError {
@@ -19,4 +19,4 @@ class UnfinishedCommitError : public UserError {
   using UserError::UserError;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -14,7 +14,7 @@
 #include "engine/store/sqlite.h"
 #include "engine/store/store_file.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 std::string UtcNow() {
@@ -51,9 +51,9 @@ class SqliteStore final : public ResultStore {
 
   std::string Grown() const override { return file_.grown(); }
 
-  std::vector<RunId> Stored() const override { return ReadStored(file_.database(), layout_); }
+  std::vector<sweep::RunId> Stored() const override { return ReadStored(file_.database(), layout_); }
 
-  void Put(const RunId& id, const MissionRecord& record, double wall_s) override {
+  void Put(const sweep::RunId& id, const mission::MissionRecord& record, double wall_s) override {
     CheckStorable(record);
     ED3R_CHECK(layout_.Contains(id), fmt::format("{}/{}/{}", id.stage, id.arm, id.mission));
     InGroup([&] {
@@ -62,18 +62,20 @@ class SqliteStore final : public ResultStore {
     });
   }
 
-  std::vector<RunId> Failed() const override {
-    std::vector<RunId> failed;
+  std::vector<sweep::RunId> Failed() const override {
+    std::vector<sweep::RunId> failed;
     for (const FailedMission& failure : ReadFailures(file_.database(), layout_)) failed.push_back(failure.id);
     return failed;
   }
 
-  void PutFailure(const RunId& id, const Failure& failure) override {
+  void PutFailure(const sweep::RunId& id, const Failure& failure) override {
     const std::int64_t scenario = layout_.Scenario(id);  // throws before the group is touched
     InGroup([&] { writer_.InsertFailure(id, scenario, layout_.seed, failure); });
   }
 
-  std::vector<DamagedMission> FindDamage() override { return ed3r::FindDamage(file_.database(), layout_); }
+  std::vector<DamagedMission> FindDamage() override {
+    return ed3r::store::FindDamage(file_.database(), layout_);
+  }
 
   void Remove(const std::vector<DamagedMission>& missions) override {
     InGroup([&] { RemoveMissions(file_.database(), missions); });
@@ -81,7 +83,7 @@ class SqliteStore final : public ResultStore {
   }
 
   void PutNetworks(const FlownNetworks& networks) override {
-    InGroup([&] { ed3r::PutNetworks(file_.database(), layout_, networks); });
+    InGroup([&] { ed3r::store::PutNetworks(file_.database(), layout_, networks); });
     Commit();
   }
 
@@ -141,4 +143,4 @@ std::unique_ptr<ResultStore> ResultStore::Open(const std::string& dir, const Rec
   return std::make_unique<SqliteStore>(dir, recipe, layout, other_code);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -17,7 +17,7 @@
 #include "engine/store/recipe.h"
 #include "engine/store/records.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 class ResultStore {
  public:
@@ -37,18 +37,18 @@ class ResultStore {
 
   // Finished missions in plan order. Failed ones are not among them: they are flown again. UserError when one is not in
   // the plan.
-  virtual std::vector<RunId> Stored() const = 0;
+  virtual std::vector<sweep::RunId> Stored() const = 0;
 
   // Missions that have failed and not been flown since, in plan order.
-  virtual std::vector<RunId> Failed() const = 0;
+  virtual std::vector<sweep::RunId> Failed() const = 0;
 
   // A mission is stored once; wall_s is kept apart from the results. A record whose timesteps are not
   // numbered upwards is an InternalError.
-  virtual void Put(const RunId& id, const MissionRecord& record, double wall_s) = 0;
+  virtual void Put(const sweep::RunId& id, const mission::MissionRecord& record, double wall_s) = 0;
 
   // A mission that threw. Its scenario and seed are filled in from the layout; replaced by a later failure,
   // removed by a later Put.
-  virtual void PutFailure(const RunId& id, const Failure& failure) = 0;
+  virtual void PutFailure(const sweep::RunId& id, const Failure& failure) = 0;
 
   // Missions that do not match their checksums or are not in the plan (damage.h); and out with them, so that they are
   // flown again. Call them before anything is put.
@@ -64,4 +64,4 @@ class ResultStore {
   virtual void Commit() = 0;  // everything put so far survives a kill
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::store

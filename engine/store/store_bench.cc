@@ -21,7 +21,7 @@
 #include "engine/store/store.h"
 #include "engine/store/tally.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 // Fractions without structure, as measured figures are; a fifth of the columns is zero at each timestep (a
@@ -36,9 +36,9 @@ void Fill(Stream& stream, Record& record) {
   });
 }
 
-MissionRecord Draw(std::uint32_t mission, int timesteps) {
+mission::MissionRecord Draw(std::uint32_t mission, int timesteps) {
   Stream stream(1, mission, Purpose::kScenario);
-  MissionRecord record;
+  mission::MissionRecord record;
   Fill(stream, record);
   for (int k = 1; k <= timesteps; ++k) {
     Fill(stream, record.steps.emplace_back());
@@ -67,7 +67,7 @@ class ProcessorWatch {
 };
 
 void PrintChecksumShare(const RecordTables& tables, const RunLayout& layout,
-                        const std::vector<MissionRecord>& records, double puts_s) {
+                        const std::vector<mission::MissionRecord>& records, double puts_s) {
   const ProcessorWatch sums;
   std::size_t digits = 0;
   for (std::size_t i = 0; i < records.size(); ++i)
@@ -84,20 +84,20 @@ double ReadUnchecked(const std::string& dir, double& sum) {
                                            tables.missions().selection()));
   Statement steps(database, fmt::format("SELECT {} FROM timesteps WHERE run = 0 AND mission = ? ORDER BY k",
                                         tables.timesteps().selection()));
-  MissionRecord record;
+  mission::MissionRecord record;
   while (missions.Step()) {
     ReadColumns(missions, 1, record);
     record.steps.clear();
     steps.Bind(0, missions.Int(0));
     while (steps.Step()) ReadColumns(steps, 0, record.steps.emplace_back());
     steps.Reset();
-    for (const TimestepRecord& step : record.steps) sum += step.total_j;
+    for (const mission::TimestepRecord& step : record.steps) sum += step.total_j;
   }
   return watch.Seconds();
 }
 
 void Write(const std::string& dir, const RunLayout& layout, int missions, int timesteps) {
-  std::vector<MissionRecord> records;
+  std::vector<mission::MissionRecord> records;
   for (int i = 0; i < missions; ++i) records.push_back(Draw(static_cast<std::uint32_t>(i), timesteps));
   const double rows = 1.0 * missions * timesteps;
   const Stopwatch all;
@@ -125,7 +125,7 @@ void Read(const std::string& dir, double rows) {
   const Stopwatch steps;
   const ProcessorWatch checking;
   double sum = 0;
-  reader.ForEachTimestep(0, 0, [&](int, const TimestepRecord& step) { sum += step.total_j; });
+  reader.ForEachTimestep(0, 0, [&](int, const mission::TimestepRecord& step) { sum += step.total_j; });
   const double checked_s = checking.Seconds();
   fmt::print("timesteps read     {:8.0f} rows/s (sum {:.6g})\n", rows / steps.Seconds(), sum);
   double again = 0;
@@ -177,17 +177,17 @@ void Merge(const std::string& dir, const RunLayout& layout, int missions, int ti
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store
 
 int main(int argc, char** argv) {
   const int missions = argc > 1 ? std::atoi(argv[1]) : 11000;
   const int timesteps = argc > 2 ? std::atoi(argv[2]) : 30;
   const auto dir = std::filesystem::temp_directory_path() / fmt::format("ed3r_store_bench_{}", missions);
   std::filesystem::remove_all(dir);
-  const ed3r::RunLayout layout{
+  const ed3r::store::RunLayout layout{
       .name = "bench", .seed = 1, .stages = {{.name = "s", .missions = missions, .arms = {{"a", 0}}}}};
-  ed3r::Write(dir.string(), layout, missions, timesteps);
-  ed3r::Read(dir.string(), 1.0 * missions * timesteps);
-  if (argc > 3) ed3r::Merge(dir.string(), layout, missions, timesteps, std::atoi(argv[3]));
+  ed3r::store::Write(dir.string(), layout, missions, timesteps);
+  ed3r::store::Read(dir.string(), 1.0 * missions * timesteps);
+  if (argc > 3) ed3r::store::Merge(dir.string(), layout, missions, timesteps, std::atoi(argv[3]));
   std::filesystem::remove_all(dir);
 }

@@ -13,7 +13,7 @@
 #include "engine/store/schema.h"
 #include "engine/store/sqlite_errors.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -182,4 +182,4 @@ void StoreFile::Discard() {
   if (created_dir_) fs::remove(dir_, ignored);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -10,7 +10,7 @@
 #include "engine/store/recipe.h"
 #include "engine/store/sqlite.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 // While it is open on a disk of this machine, the file is in WAL mode: readers of other processes see every commit and never
 // wait. Closing brings it back to one plain file, unless a reader is still looking (then the next session does).
@@ -61,4 +61,4 @@ class StoreFile {
 // Rolls back what a killed writer left half committed in DIR, if no writer is alive. UserError otherwise.
 void FinishCommit(const std::string& dir);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -11,7 +11,7 @@
 #include "engine/store/schema.h"
 #include "engine/store/sqlite.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -91,4 +91,4 @@ double MissionsPerSecond(const std::string& dir, double still_s) {
   return static_cast<double>(last.Int(0)) / static_cast<double>(last.Int(1));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -9,7 +9,7 @@
 #include "engine/store/layout.h"
 #include "engine/store/reader.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 class Tally {
  public:
@@ -32,4 +32,4 @@ class Tally {
 // is open and the file was written within the last `still_s` seconds.
 double MissionsPerSecond(const std::string& dir, double still_s);
 
-}  // namespace ed3r
+}  // namespace ed3r::store

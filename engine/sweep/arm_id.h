@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 struct ArmId {
   std::string name;     // "ed3r-75"
@@ -26,4 +26,4 @@ struct ArmId {
   static constexpr char kMark = '@';
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

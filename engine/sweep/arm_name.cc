@@ -8,7 +8,7 @@
 
 #include "engine/sweep/arm_id.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 constexpr std::string_view kStrategyKey = "mission.strategy";
@@ -81,4 +81,4 @@ std::string VariantName(const std::vector<const AxisPoint*>& points, const std::
   return fmt::format("{}", fmt::join(parts, ","));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

@@ -9,7 +9,7 @@
 #include "engine/sweep/axis.h"
 #include "engine/sweep/plan.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 // The name of the arm at one point of each axis: the points' parts, joined by commas. A named point of a
 // `list` gives its name, which stands for all that it sets. Any other setting gives "key=value", with the
@@ -27,4 +27,4 @@ std::string ArmName(const Stage& stage, const Config& config, const std::vector<
 //   ed3r-75@hover_form=printed    warmup@heavy
 std::string VariantName(const std::vector<const AxisPoint*>& points, const std::set<std::string>& axis_keys);
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

@@ -11,7 +11,7 @@
 #include "engine/config/parameters.h"
 #include "engine/sweep/sweep_file.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 struct WrittenValue {
@@ -191,4 +191,4 @@ void CheckAxesDiffer(const std::vector<Axis>& axes) {
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

@@ -16,7 +16,7 @@
 
 #include "engine/sweep/setting.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 struct AxisPoint {
   std::string name;  // "" when it has none
@@ -43,4 +43,4 @@ const Setting* FindOnAxes(const std::vector<Axis>& axes, std::string_view key);
 // Refuses axes that set the same parameter: one would overwrite the other.
 void CheckAxesDiffer(const std::vector<Axis>& axes);
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

@@ -12,7 +12,7 @@
 #include "engine/core/check.h"
 #include "engine/core/suggest.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 enum class Relation { kEqual, kNotEqual, kLess, kLessOrEqual, kGreater, kGreaterOrEqual };
@@ -321,4 +321,4 @@ std::vector<Condition> ReadConditions(const YamlNode& where, const SettingReader
   return conditions;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

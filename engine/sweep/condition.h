@@ -15,7 +15,7 @@
 #include "engine/config/config.h"
 #include "engine/sweep/setting.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 class Condition {
  public:
@@ -38,4 +38,4 @@ class Condition {
 // The conditions of a `where`: one text or a list of them, all of which must hold.
 std::vector<Condition> ReadConditions(const YamlNode& where, const SettingReader& reader);
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

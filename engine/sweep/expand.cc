@@ -14,7 +14,7 @@
 #include "engine/sweep/arm_name.h"
 #include "engine/sweep/sweep_file.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 void Apply(const Setting& setting, Arm& arm) {
@@ -259,4 +259,4 @@ std::vector<Stage> ExpandStages(const SweepSource& source, const std::vector<Set
   return stages;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

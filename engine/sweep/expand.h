@@ -8,7 +8,7 @@
 #include "engine/sweep/plan.h"
 #include "engine/sweep/sweep_source.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 // Missions per arm as --missions says them, by stage; "" is for the flying stages that are not named.
 using MissionCounts = std::map<std::string, WrittenCount>;
@@ -20,4 +20,4 @@ using MissionCounts = std::map<std::string, WrittenCount>;
 std::vector<Stage> ExpandStages(const SweepSource& source, const std::vector<Setting>& overrides,
                                 const MissionCounts& missions);
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

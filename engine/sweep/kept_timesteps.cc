@@ -6,7 +6,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 constexpr std::string_view kStageLine = "stage=", kTimestepsLine = "timesteps=";
@@ -33,4 +33,4 @@ std::vector<KeptTimesteps> ReadKeptTimesteps(std::string_view plan_text) {
   return kept;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

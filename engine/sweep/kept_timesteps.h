@@ -8,14 +8,24 @@
 
 #include "engine/config/field.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 enum class KeptTimesteps { kAll, kFailed, kNone };  // kFailed: of missions that end in anything but a success
+
+}  // namespace ed3r::sweep
+
+namespace ed3r {
+
 template <>
-struct EnumNames<KeptTimesteps> {
-  static constexpr EnumName<KeptTimesteps> kNames[] = {
-      {KeptTimesteps::kAll, "all"}, {KeptTimesteps::kFailed, "failed"}, {KeptTimesteps::kNone, "none"}};
+struct EnumNames<sweep::KeptTimesteps> {
+  static constexpr EnumName<sweep::KeptTimesteps> kNames[] = {{sweep::KeptTimesteps::kAll, "all"},
+                                                              {sweep::KeptTimesteps::kFailed, "failed"},
+                                                              {sweep::KeptTimesteps::kNone, "none"}};
 };
+
+}  // namespace ed3r
+
+namespace ed3r::sweep {
 
 // None for another word.
 std::optional<KeptTimesteps> KeptTimestepsOf(std::string_view word);
@@ -24,4 +34,4 @@ std::optional<KeptTimesteps> KeptTimestepsOf(std::string_view word);
 // word that this version does not know.
 std::vector<KeptTimesteps> ReadKeptTimesteps(std::string_view plan_text);
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

@@ -5,7 +5,7 @@
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 Config Arm::CanonicalConfig() const {
   Config canonical = config;
@@ -40,4 +40,4 @@ std::string SweepPlan::CanonicalText() const {
   return text;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

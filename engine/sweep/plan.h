@@ -12,7 +12,7 @@
 #include "engine/config/config.h"
 #include "engine/sweep/kept_timesteps.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 enum class StageKind { kFly, kTrain };
 
@@ -73,4 +73,4 @@ struct RunId {
   auto operator<=>(const RunId&) const = default;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

@@ -10,7 +10,7 @@
 #include "engine/sweep/arm_id.h"
 #include "engine/sweep/setting.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 std::vector<std::string> SplitList(const std::string& text) {
@@ -103,4 +103,4 @@ SweepPlan PlanOf(const WrittenPlan& written, const std::string& from) {
   return plan;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

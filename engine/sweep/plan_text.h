@@ -9,7 +9,7 @@
 
 #include "engine/sweep/plan.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 // SweepPlan::CanonicalText() as it stands, also of a version that had other parameters than this one.
 struct WrittenPlan {
@@ -39,4 +39,4 @@ WrittenPlan ReadPlanText(std::string_view text);
 // a parameter, or knows another one.
 SweepPlan PlanOf(const WrittenPlan& written, const std::string& from);
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

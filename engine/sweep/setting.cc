@@ -4,30 +4,22 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <map>
 #include <system_error>
 
 #include "engine/config/parameters.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
-struct FileKey {
-  std::string_view key;
-  std::string_view not_needed;
-};
-constexpr FileKey kFileKeys[] = {{"mission.world", ""},
-                                 {"perception.detector.full", "builtin"},
-                                 {"perception.detector.quantized", "builtin"},
-                                 {"networks.rc", "trained"},
-                                 {"networks.robot", "trained"}};
 constexpr std::string_view kAirframeKey = "robot";
 
-const FileKey* FindFileKey(std::string_view key) {
-  const auto* found = std::find_if(std::begin(kFileKeys), std::end(kFileKeys),
-                                   [&](const FileKey& k) { return k.key == key; });
-  return found == std::end(kFileKeys) ? nullptr : found;
+// Null for what is no file, and for an unknown key.
+const ParameterInfo* FindFileKey(std::string_view key) {
+  const std::vector<ParameterInfo>& all = Parameters();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const ParameterInfo& p) { return p.key == key; });
+  return found == all.end() || !found->is_file ? nullptr : &*found;
 }
 
 std::filesystem::path Absolute(const std::string& path, const std::string& at) {
@@ -72,8 +64,8 @@ Setting SettingReader::Read(const std::string& written_key, const std::string& k
 bool NamesAFile(std::string_view key) { return FindFileKey(key) != nullptr; }
 
 std::string_view FileNotNeeded(std::string_view key) {
-  const FileKey* found = FindFileKey(key);
-  return found == nullptr ? std::string_view() : found->not_needed;
+  const ParameterInfo* found = FindFileKey(key);
+  return found == nullptr ? std::string_view() : found->or_else;
 }
 
 void SettingReader::ResolveFile(Setting& setting) const {
@@ -151,4 +143,4 @@ void SettingReader::AppendMap(const YamlNode& map, const std::string& prefix,
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

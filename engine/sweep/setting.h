@@ -10,7 +10,7 @@
 #include "engine/config/config.h"
 #include "engine/core/yaml_reader.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 // A check that the parameters' own description cannot make, such as the names of the strategies, which a
 // later layer knows: "" or a clause as SetParameter's ("mission.strategy: 'rsb' ...; did you mean rbs?").
@@ -72,4 +72,4 @@ class SettingReader {
   ValueCheck check_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

@@ -7,7 +7,7 @@
 #include "engine/sweep/expand.h"
 #include "engine/sweep/sweep_source.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 std::vector<Setting> ReadOverrides(const std::vector<std::string>& written, const std::string& file,
@@ -61,4 +61,4 @@ SweepPlan LoadSweep(const std::string& file, const SweepOverrides& overrides, co
   return plan;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

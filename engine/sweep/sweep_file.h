@@ -35,7 +35,7 @@
 #include "engine/sweep/plan.h"
 #include "engine/sweep/setting.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 struct MissionsOverride {
   std::string stage;  // "" for every flying stage that no other override names
@@ -58,4 +58,4 @@ constexpr int kMaxArms = 10'000;                   // in all stages, counted bef
 SweepPlan LoadSweep(const std::string& file, const SweepOverrides& overrides = {},
                     const ValueCheck& check = {});
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

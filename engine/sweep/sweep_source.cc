@@ -10,7 +10,7 @@
 #include "engine/core/suggest.h"
 #include "engine/sweep/sweep_file.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 Precision ReadPrecision(const YamlNode& node, const ValueCheck& check) {
@@ -209,4 +209,4 @@ std::vector<Setting> SettingsOffAxes(const std::vector<Setting>& settings, const
   return kept;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

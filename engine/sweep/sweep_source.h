@@ -15,7 +15,7 @@
 #include "engine/sweep/plan.h"
 #include "engine/sweep/setting.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 struct WrittenCount {
   int value = 0;
@@ -64,4 +64,4 @@ std::vector<Setting> MergedSettings(const std::vector<Setting>& under, const std
 // The settings whose keys are on none of the axes.
 std::vector<Setting> SettingsOffAxes(const std::vector<Setting>& settings, const std::vector<Axis>& axes);
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

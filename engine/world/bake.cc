@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 struct Corner {
@@ -120,4 +120,4 @@ TriangleMesh Bake(const Terrain& terrain, const std::vector<Tree>& trees) {
   return mesh;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

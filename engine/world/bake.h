@@ -6,7 +6,7 @@
 #include "engine/world/geometry.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 // The terrain's triangles come first (two per cell, row by row from the south-west), then a constant number
 // per tree in the order given: a triangle's number tells what it belongs to.
@@ -17,4 +17,4 @@ inline constexpr int kTrunkTriangles = 16;  // the first of each tree; the rest 
 // five-sided trunk that is rooted below ground and ends inside the crown, and a six-sided crown.
 TriangleMesh Bake(const Terrain& terrain, const std::vector<Tree>& trees);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -7,7 +7,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -85,4 +85,4 @@ CommaSeparated ToCommaSeparated(const std::string& path, std::string text) {
   return table;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace ed3r {
+namespace ed3r::world {
 
 struct CommaSeparated {
   std::string text;
@@ -16,4 +16,4 @@ struct CommaSeparated {
 // for cells apart by spaces.
 CommaSeparated ToCommaSeparated(const std::string& path, std::string text);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -11,7 +11,7 @@
 #include "engine/world/raster_file.h"
 #include "engine/world/terrain.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 class ElevationGrid {
@@ -134,4 +134,4 @@ Terrain ReadElevationGrid(const GridTerrainSpec& spec, const Eigen::Vector3d& si
 
 std::vector<std::string> ElevationGridFiles(const GridTerrainSpec& spec) { return RasterFile(spec).Files(); }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 // Numbers of a TIFF block, in its byte order; 0 beyond its end.
@@ -54,4 +54,4 @@ cv::Mat Turned(const cv::Mat& picture, int orientation) {
   return upright;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -12,7 +12,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are hashed as little-endian bytes");
@@ -84,4 +84,4 @@ std::string SceneFingerprint(const Scene::Parts& parts, const TriangleMesh& mesh
   return sha.Hex();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -15,7 +15,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 // Bullet counts bodies and manifolds in unguarded globals that nothing reads: worlds are made, take their
@@ -221,4 +221,4 @@ void FlightWorld::Step(const Eigen::Vector3d& force_world_n, const Eigen::Vector
 
 int FlightWorld::ContactSteps() const { return impl_->contact_steps; }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -13,7 +13,7 @@
 
 #include "engine/world/geometry.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 struct RigidBodySpec {
   double mass_kg = 1.0;
@@ -30,10 +30,7 @@ struct RigidBodyState {
 
 class FlightWorld {
  public:
-  static constexpr double kUsualStepS = 1.0 / 240.0;
-
-  FlightWorld(const StaticGeometry& geometry, const RigidBodySpec& robot, double gravity_mps2,
-              double step_s = kUsualStepS);
+  FlightWorld(const StaticGeometry& geometry, const RigidBodySpec& robot, double gravity_mps2, double step_s);
   ~FlightWorld();
   FlightWorld(const FlightWorld&) = delete;
   FlightWorld& operator=(const FlightWorld&) = delete;
@@ -52,4 +49,4 @@ class FlightWorld {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -10,7 +10,7 @@
 #include "engine/world/noise.h"
 #include "engine/world/stem_map.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 // Streams of kWorld are told apart by their scenario: 0 terrain, 1 forest. In the forest, timestep 0 is for
@@ -168,4 +168,4 @@ std::vector<Tree> PlantForest(const ForestSpec& spec, const Eigen::Vector3d& siz
                        : Generate(*spec.generated, size_m, site, seed);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -8,7 +8,7 @@
 #include "engine/world/scene.h"
 #include "engine/world/world_file.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 // A disc that no crown reaches over.
 struct ClearDisc {
@@ -23,4 +23,4 @@ std::vector<Tree> PlantForest(const ForestSpec& spec, const Eigen::Vector3d& siz
                               const std::vector<ClearDisc>& clear, std::uint64_t seed,
                               std::vector<std::string>* notes = nullptr);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -6,7 +6,7 @@
 #include "engine/world/noise.h"
 #include "engine/world/terrain.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 // Streams of kWorld are told apart by their scenario: 0 terrain, 1 forest.
@@ -88,4 +88,4 @@ Terrain GenerateTerrain(const GeneratedTerrainSpec& spec, const Eigen::Vector3d&
   return terrain;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -15,7 +15,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 constexpr double kOcclusionMarginM = 0.01;
@@ -251,4 +251,4 @@ btCollisionShape* StaticGeometry::Shape() const { return &impl_->shape; }
 
 const TriangleMesh& StaticGeometry::Mesh() const { return impl_->mesh; }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

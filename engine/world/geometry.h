@@ -17,7 +17,7 @@
 
 class btCollisionShape;
 
-namespace ed3r {
+namespace ed3r::world {
 
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices_m;
@@ -75,4 +75,4 @@ class StaticGeometry {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -10,7 +10,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 struct Complaints {
@@ -61,4 +61,4 @@ int CheckJpeg(std::string_view bytes, const std::string& name) {
   return channels;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

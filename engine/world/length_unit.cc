@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 constexpr double kFootM = 0.3048;
@@ -94,4 +94,4 @@ std::optional<LengthUnit> FindLengthUnit(double metres) {
   return std::nullopt;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

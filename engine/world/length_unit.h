@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace ed3r {
+namespace ed3r::world {
 
 struct LengthUnit {
   double m = 1.0;         // metres in one
@@ -21,4 +21,4 @@ std::optional<LengthUnit> FindLengthUnit(std::string_view word);
 // The unit that has so many metres, to 1 part in 10^9: the two kinds of foot are 2 in 10^6 apart.
 std::optional<LengthUnit> FindLengthUnit(double metres);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

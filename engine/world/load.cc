@@ -14,7 +14,7 @@
 #include "engine/world/terrain.h"
 #include "engine/world/world_file.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 Terrain BuildTerrain(const WorldSpec& spec, std::vector<std::string>& notes) {
@@ -119,4 +119,4 @@ std::shared_ptr<const Scene> Scene::Load(const std::string& world_file) {
   return std::make_shared<const Scene>(std::move(parts));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -13,7 +13,7 @@
 #include "engine/world/map_relief.h"
 #include "engine/world/picture_file.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 // Everything is drawn at twice the size and shrunk at the end: the simplest good antialiasing.
@@ -296,4 +296,4 @@ void WriteMapPicture(const Scene& scene, const std::string& path, const MapOverl
   WritePicture(MapPicture(scene, overlay, width_px).Draw(), path);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

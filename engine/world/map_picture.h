@@ -7,7 +7,7 @@
 
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 // One mission drawn over the map.
 struct MapOverlay {
@@ -20,4 +20,4 @@ struct MapOverlay {
 void WriteMapPicture(const Scene& scene, const std::string& path, const MapOverlay& overlay = {},
                      int width_px = 1200);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

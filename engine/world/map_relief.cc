@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 struct ColourStop {
@@ -84,4 +84,4 @@ cv::Mat DrawRelief(const Terrain& terrain, cv::Size size_px, double highest_m) {
   return picture;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -5,7 +5,7 @@
 
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 // Colour (blue, green, red; 0 .. 255) of a share of the highest elevation.
 cv::Vec3f ElevationColour(double share);
@@ -16,4 +16,4 @@ double ContourStepM(double highest_m);
 // North up, 8-bit BGR of the given size, for ground between 0 and highest_m.
 cv::Mat DrawRelief(const Terrain& terrain, cv::Size size_px, double highest_m);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

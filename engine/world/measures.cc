@@ -7,7 +7,7 @@
 
 #include "engine/world/sight.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 struct Polar {
@@ -71,4 +71,4 @@ WorldMeasures MeasureWorld(const Scene& scene) {
   return measures;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -6,7 +6,7 @@
 
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 struct SiteMeasure {
   std::string name;
@@ -41,4 +41,4 @@ struct WorldMeasures {
 
 WorldMeasures MeasureWorld(const Scene& scene);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

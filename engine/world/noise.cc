@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 struct Gradient {
@@ -60,4 +60,4 @@ double GradientNoise::Fractal(double x, double y, int octaves, double gain) cons
   return sum / weights;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

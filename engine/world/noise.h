@@ -7,7 +7,7 @@
 
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 // Smooth pseudo-random function of the plane, about [-1, 1], 0 on whole coordinates; features of size 1.
 // Repeats after 256.
@@ -24,4 +24,4 @@ class GradientNoise {
   std::array<std::uint8_t, 256> order_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -15,7 +15,7 @@
 #include "engine/world/png_pixels.h"
 #include "engine/world/quiet_opencv.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
@@ -176,4 +176,4 @@ void WritePicture(const cv::Mat& picture, const std::string& path) {
   WriteFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

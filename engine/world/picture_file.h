@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace ed3r {
+namespace ed3r::world {
 
 struct PictureSides {
   int width_px = 0, height_px = 0;
@@ -31,4 +31,4 @@ Picture ReadPicture(const std::string& path);
 // By the ending of `path`: .png, .jpg or .jpeg. Throws UserError.
 void WritePicture(const cv::Mat& picture, const std::string& path);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

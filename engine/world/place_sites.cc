@@ -13,7 +13,7 @@
 #include "engine/world/sight.h"
 #include "engine/world/text_place.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 constexpr int kDraws = 4000;     // of all sites together
@@ -107,4 +107,4 @@ std::vector<FireSite> PlaceSites(const WorldSpec& spec, const Scene::Parts& part
   return Placing(spec, parts).Place();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -5,7 +5,7 @@
 
 #include "engine/core/low_discrepancy.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 std::vector<Eigen::Vector3d> FlamePoints(const FireShape& fire, const Eigen::Vector3d& base_m, int count) {
   std::vector<Eigen::Vector3d> points;
@@ -36,4 +36,4 @@ std::vector<Eigen::Vector3d> SmokePoints(const FireShape& fire, const Eigen::Vec
   return points;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -6,7 +6,7 @@
 
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 // Points of the flame, a cone whose silhouette narrows towards the tip; each stands for an equal part of it.
 std::vector<Eigen::Vector3d> FlamePoints(const FireShape& fire, const Eigen::Vector3d& base_m, int count);
@@ -17,4 +17,4 @@ std::vector<Eigen::Vector3d> SmokePoints(const FireShape& fire, const Eigen::Vec
 // Radius of the smoke where it leaves the flame.
 inline double SmokeBottomRadiusM(const FireShape& fire) { return 0.5 * fire.flame_radius_m; }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

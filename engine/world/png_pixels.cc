@@ -10,7 +10,7 @@
 #include "engine/core/check.h"
 #include "engine/world/exif_orientation.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 struct Source {
@@ -107,4 +107,4 @@ PngPixels DecodePng(std::string_view bytes, const std::string& name) {
   return pixels;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace ed3r {
+namespace ed3r::world {
 
 struct PngPixels {
   cv::Mat bgra;               // 8 bits a channel, blue first
@@ -18,4 +18,4 @@ struct PngPixels {
 // `bytes` have passed ReadPictureSides; `name` begins messages. Throws UserError for a file that is damaged or cut short.
 PngPixels DecodePng(std::string_view bytes, const std::string& name);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 // In the place of GDAL's virtual file systems: archives, pipes and networks that a file or its metadata could name.
@@ -76,4 +76,4 @@ std::string QuietGdal::LastError() {
   return text.empty() ? "unknown reason" : text;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace ed3r {
+namespace ed3r::world {
 
 class QuietGdal {
  public:
@@ -17,4 +17,4 @@ class QuietGdal {
   static std::string LastError();
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::world

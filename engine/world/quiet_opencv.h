@@ -4,7 +4,7 @@
 #include <opencv2/core/utility.hpp>
 #include <opencv2/core/utils/logger.hpp>
 
-namespace ed3r {
+namespace ed3r::world {
 
 // For the whole process and for good; any number of calls, from any thread.
 inline void QuietOpenCv() {
@@ -16,4 +16,4 @@ inline void QuietOpenCv() {
   static_cast<void>(once);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -17,7 +17,7 @@
 #include "engine/core/file.h"
 #include "engine/world/quiet_gdal.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 // GDAL looks for georeferences and masks in files that are called alike; opening a pipe among them would wait.
@@ -341,4 +341,4 @@ std::string RasterFile::Note() const {
   return note;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -16,7 +16,7 @@
 class GDALDataset;
 class GDALRasterBand;
 
-namespace ed3r {
+namespace ed3r::world {
 
 // A rectangle of cells, row 0 in the south.
 struct CellWindow {
@@ -76,4 +76,4 @@ class RasterFile {
   double cell_x_m_ = 0.0, cell_y_m_ = 0.0;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::world

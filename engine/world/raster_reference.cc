@@ -16,7 +16,7 @@
 #include "engine/core/file.h"
 #include "engine/world/utm_zone.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -264,4 +264,4 @@ std::string PrjBeside(const std::filesystem::path& file) {
   return "";
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -10,7 +10,7 @@
 
 class GDALDataset;
 
-namespace ed3r {
+namespace ed3r::world {
 
 struct RasterUnits {
   LengthUnit length{1.0, "m"}, height{1.0, "m"};
@@ -28,4 +28,4 @@ RasterUnits UnitsOf(GDALDataset& dataset, const std::filesystem::path& file, con
 // The .prj beside a raster, whatever the case of its ending, or "".
 std::string PrjBeside(const std::filesystem::path& file);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -9,7 +9,7 @@
 #include "engine/world/bake.h"
 #include "engine/world/fingerprint.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 void CheckTerrain(const Terrain& terrain) {
@@ -38,4 +38,4 @@ Scene::Scene(Parts parts) : parts_(std::move(parts)) {
   fingerprint_ = SceneFingerprint(parts_, geometry_->Mesh());
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

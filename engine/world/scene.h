@@ -13,7 +13,7 @@
 
 #include "engine/world/geometry.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 // Regular elevation grid, nodes at (column * cell_m, row * cell_m), row 0 in the south.
 struct Terrain {
@@ -103,4 +103,4 @@ class Scene {
   std::string fingerprint_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::world

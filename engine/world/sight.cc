@@ -10,7 +10,7 @@
 #include "engine/world/bake.h"
 #include "engine/world/plume.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 // One packet of rays per viewpoint; flame to smoke as FireView weighs them (32 : 48).
@@ -110,4 +110,4 @@ double Sight::Of(const Eigen::Vector3d& base_m, std::span<const ClearDisc> felle
   return static_cast<double>(visible) / static_cast<double>(points_m.size() * viewpoints_m_.size());
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

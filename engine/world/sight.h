@@ -14,7 +14,7 @@
 #include "engine/world/geometry.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 // Where the fire is looked at from; heights are above ground.
 struct ViewArea {
@@ -55,4 +55,4 @@ class Sight {
   std::vector<Eigen::Vector3d> viewpoints_m_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::world

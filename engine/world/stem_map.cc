@@ -15,7 +15,7 @@
 #include "engine/core/check.h"
 #include "engine/world/stem_table.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 constexpr double kSpotM = 0.01;  // trees nearer than this are at one spot
@@ -207,4 +207,4 @@ class StemMapBuilder {
 
 StemMap ReadStemMap(const StemMapSpec& spec) { return StemMapBuilder(spec).Build(); }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

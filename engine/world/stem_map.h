@@ -22,7 +22,7 @@
 
 #include "engine/world/world_file.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 struct Stem {
   double x_m, y_m;
@@ -42,4 +42,4 @@ StemMap ReadStemMap(const StemMapSpec& spec);
 // The names above.
 std::span<const std::string_view> StemColumnNames();
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -13,7 +13,7 @@
 #include "engine/world/stem_map.h"
 #include "engine/world/utm_zone.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 struct Meaning {
@@ -209,4 +209,4 @@ double StemTable::FirstNumber(const std::string& header) const {
 
 std::span<const std::string_view> StemColumnNames() { return kNameTexts; }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

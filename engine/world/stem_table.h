@@ -12,7 +12,7 @@
 #include "engine/world/delimited_text.h"
 #include "engine/world/world_file.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 enum StemQuantity { kX, kY, kDiameter, kHeight, kCrownDepth, kCrownRadius, kStemQuantities };
 
@@ -67,4 +67,4 @@ class StemTable {
   std::array<Where, kStemQuantities> where_{};
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::world

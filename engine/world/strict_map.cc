@@ -10,7 +10,7 @@
 #include "engine/core/check.h"
 #include "engine/core/suggest.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 std::string RangeText(const AllowedRange& range) {
@@ -237,4 +237,4 @@ void StrictMap::Finish() const {
   if (!missing_.empty()) FailAt(node_->at, fmt::format("{}: is missing", Name(missing_.front())));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -24,7 +24,7 @@
 
 #include "engine/world/text_place.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 struct AllowedRange {
   double min = -std::numeric_limits<double>::infinity();
@@ -92,4 +92,4 @@ class StrictMap {
   std::vector<std::string> missing_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::world

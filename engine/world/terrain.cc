@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace ed3r {
+namespace ed3r::world {
 
 double Terrain::HeightAt(double x_m, double y_m) const {
   const double column = std::clamp(x_m / cell_m, 0.0, columns - 1.0);
@@ -36,4 +36,4 @@ void PutLowestAtZero(Terrain& terrain) {
   for (float& height : terrain.height_m) height -= lowest;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -8,7 +8,7 @@
 #include "engine/world/scene.h"
 #include "engine/world/world_file.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 // A grid of nodes over the area, heights all 0.
 Terrain FlatTerrain(const Eigen::Vector3d& size_m, double cell_m);
@@ -29,4 +29,4 @@ Terrain ReadElevationGrid(const GridTerrainSpec& spec, const Eigen::Vector3d& si
 // The grid's file (canonical) and those beside it that say how it is to be read. Throws as above.
 std::vector<std::string> ElevationGridFiles(const GridTerrainSpec& spec);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

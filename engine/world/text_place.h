@@ -5,9 +5,9 @@
 
 #include "engine/core/yaml_reader.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 // "file:line:column", counted from 1; FailAt of yaml_reader.h begins its message with it.
 using TextPlace = std::string;
 
-}  // namespace ed3r
+}  // namespace ed3r::world

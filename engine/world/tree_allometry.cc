@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 struct Kind {
@@ -57,4 +57,4 @@ double BreastHeightDiameterM(double height_m, double crown_radius_m) {
   return 0.01 * 0.557 * std::pow(height_m * 2.0 * crown_radius_m, 0.809) * std::exp(0.056 * 0.056 / 2.0);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

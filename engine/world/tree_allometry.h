@@ -18,7 +18,7 @@
 #include <optional>
 #include <string_view>
 
-namespace ed3r {
+namespace ed3r::world {
 
 enum class ForestKind { kConifers, kDeciduous, kMixed, kTropical };
 
@@ -32,4 +32,4 @@ double CrownRadiusM(ForestKind kind, double height_m);
 double CrownDepthM(double height_m);  // less than the height
 double BreastHeightDiameterM(double height_m, double crown_radius_m);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-namespace ed3r {
+namespace ed3r::world {
 
 // "EPSG:32610" on WGS 84; near the poles the polar stereographic one.
 inline std::string UtmZone(double longitude_deg, double latitude_deg) {
@@ -20,4 +20,4 @@ inline std::string UtmZone(double longitude_deg, double latitude_deg) {
   return fmt::format("EPSG:{}", (latitude_deg < 0.0 ? 32700 : 32600) + zone);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

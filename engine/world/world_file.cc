@@ -11,7 +11,7 @@
 #include "engine/world/stem_map.h"
 #include "engine/world/strict_map.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 constexpr double kMaxSideM = 4000.0;
@@ -322,4 +322,4 @@ WorldSpec ReadWorldFile(const std::string& file) {
   return spec;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -18,7 +18,7 @@
 #include "engine/world/text_place.h"
 #include "engine/world/tree_allometry.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 // A mountain ridge along a line; noise bends it and cuts spurs and saddles into it.
 struct RidgeSpec {
@@ -136,4 +136,4 @@ struct WorldSpec {
 // key.
 WorldSpec ReadWorldFile(const std::string& file);
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -36,7 +36,7 @@ std::vector<float> Normal(std::size_t n, double sigma, std::mt19937* rng) {
 }
 
 // Random weights that keep the activations at order one (He).
-std::vector<float> RandomParameters(const DenseShape& shape, std::mt19937* rng) {
+std::vector<float> RandomParameters(const kernels::DenseShape& shape, std::mt19937* rng) {
   std::vector<float> flat;
   for (int l = 0; l < shape.layers; ++l) {
     const int in = shape.sizes[l], out = shape.sizes[l + 1];
@@ -46,7 +46,7 @@ std::vector<float> RandomParameters(const DenseShape& shape, std::mt19937* rng) 
   return flat;
 }
 
-Contender FmaPeak(SimdLevel level) {
+Contender FmaPeak(kernels::SimdLevel level) {
   return {"FMA peak, this core", [level] { RunFmaPeak(level); }, RunFmaPeak(level)};
 }
 
@@ -73,7 +73,7 @@ struct Case {
   int n_state, n;
 };
 
-double DecisionFlops(const DenseShape& shape, int n_state, int n) {
+double DecisionFlops(const kernels::DenseShape& shape, int n_state, int n) {
   double per_candidate = static_cast<double>(shape.sizes[0] - n_state) * shape.sizes[1];
   for (int l = 1; l < shape.layers; ++l)
     per_candidate += static_cast<double>(shape.sizes[l]) * shape.sizes[l + 1];
@@ -81,12 +81,12 @@ double DecisionFlops(const DenseShape& shape, int n_state, int n) {
 }
 
 void MeasureDecision(const Case& c, int rounds) {
-  const SimdLevel level = ActiveSimdLevel();
-  const DenseShape shape = MakeDenseShape(c.sizes.data(), static_cast<int>(c.sizes.size()));
+  const kernels::SimdLevel level = kernels::ActiveSimdLevel();
+  const kernels::DenseShape shape = kernels::MakeDenseShape(c.sizes.data(), static_cast<int>(c.sizes.size()));
   std::mt19937 rng(1);
   const std::vector<float> flat = RandomParameters(shape, &rng);
-  AlignedFloats packed(PackedFloats(shape)), workspace(RfnnWorkspaceFloats(shape));
-  PackParameters(shape, flat.data(), packed.data());
+  kernels::AlignedFloats packed(kernels::PackedFloats(shape)), workspace(kernels::RfnnWorkspaceFloats(shape));
+  kernels::PackParameters(shape, flat.data(), packed.data());
   const int n_action = shape.inputs() - c.n_state;
   const std::vector<float> state = Normal(c.n_state, 1.0, &rng), actions = Normal(c.n * n_action, 1.0, &rng);
   std::vector<float> inputs;
@@ -95,14 +95,14 @@ void MeasureDecision(const Case& c, int rounds) {
     inputs.insert(inputs.end(), actions.begin() + k * n_action, actions.begin() + (k + 1) * n_action);
   }
   std::vector<float> values(c.n);
-  const RfnnDecision decision{state.data(), c.n_state, actions.data(), c.n, values.data()};
-  const DenseNet net{shape, packed.data()};
+  const kernels::RfnnDecision decision{state.data(), c.n_state, actions.data(), c.n, values.data()};
+  const kernels::DenseNet net{shape, packed.data()};
   const double flops = DecisionFlops(shape, c.n_state, c.n);
 
   std::vector<std::string> missing;
   std::vector<Contender> contenders;
-  contenders.push_back({std::string("hand, ") + SimdLevelName(level),
-                        [&] { RfnnArgmax(net, decision, workspace.data(), level); }, flops});
+  contenders.push_back({std::string("hand, ") + kernels::SimdLevelName(level),
+                        [&] { kernels::RfnnArgmax(net, decision, workspace.data(), level); }, flops});
   contenders[0].run();
   std::vector<std::unique_ptr<InferencePeer>> peers;
   std::vector<float> theirs(c.n);
@@ -126,12 +126,13 @@ void MeasureDecision(const Case& c, int rounds) {
 }
 
 // Peers learn without dropout, so that different draws do not hide a different step.
-void CheckTraining(const NamedTrainingPeer& peer, const DenseShape& shape, const std::vector<float>& flat,
-                   TrainOptions options, const std::vector<float>& inputs, const std::vector<float>& targets,
+void CheckTraining(const NamedTrainingPeer& peer, const kernels::DenseShape& shape,
+                   const std::vector<float>& flat, kernels::TrainOptions options,
+                   const std::vector<float>& inputs, const std::vector<float>& targets,
                    const std::vector<std::uint32_t>& rows) {
   options.dropout = 0.0;
   options.learning_rate = 1e-3;  // large enough for the losses to move
-  DenseTrainer ours(shape, flat.data(), options);
+  kernels::DenseTrainer ours(shape, flat.data(), options);
   const std::unique_ptr<TrainingPeer> theirs = peer.make(shape, flat.data(), options);
   std::vector<float> our_losses, their_losses;
   const int n = static_cast<int>(rows.size());
@@ -145,7 +146,7 @@ void CheckTraining(const NamedTrainingPeer& peer, const DenseShape& shape, const
 void MeasureTraining(int rounds) {
   constexpr int kBatch = 128, kSamples = 4096;
   const int sizes[] = {13, 128, 64, 64, 32, 1};
-  const DenseShape shape = MakeDenseShape(sizes, 6);
+  const kernels::DenseShape shape = kernels::MakeDenseShape(sizes, 6);
   std::mt19937 rng(2);
   const std::vector<float> flat = RandomParameters(shape, &rng);
   const std::vector<float> inputs = Normal(kSamples * 13, 1.0, &rng), targets = Normal(kSamples, 1.0, &rng);
@@ -154,10 +155,10 @@ void MeasureTraining(int rounds) {
   double flops = 0;  // forward, weight gradient, and input gradient but for the first layer
   for (int l = 0; l < shape.layers; ++l) flops += 2.0 * kBatch * (l ? 3 : 2) * sizes[l] * sizes[l + 1];
 
-  const TrainOptions options;
-  DenseTrainer ours(shape, flat.data(), options);
+  const kernels::TrainOptions options;
+  kernels::DenseTrainer ours(shape, flat.data(), options);
   std::vector<Contender> contenders;
-  contenders.push_back({std::string("hand, ") + SimdLevelName(options.level),
+  contenders.push_back({std::string("hand, ") + kernels::SimdLevelName(options.level),
                         [&] { ours.Step(inputs.data(), targets.data(), rows.data(), kBatch); }, flops});
   std::vector<std::string> missing;
   std::vector<std::unique_ptr<TrainingPeer>> peers;
@@ -188,7 +189,7 @@ int Main(int argc, char** argv) {
   };
   PinToThisCore();
   std::printf("level %s, one core, medians of %d paired rounds; ratio = time / hand-written time\n",
-              SimdLevelName(ActiveSimdLevel()), rounds);
+              kernels::SimdLevelName(kernels::ActiveSimdLevel()), rounds);
   if (is_wanted("rc"))
     MeasureDecision({"RC decision: 13-128-64-64-32-1, 1000 candidates", {13, 128, 64, 64, 32, 1}, 8, 1000},
                     rounds);

@@ -10,7 +10,7 @@ using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::Row
 
 class EigenPeer : public InferencePeer {
  public:
-  EigenPeer(const DenseShape& shape, const float* flat, int n) : n_(n), inputs_(shape.inputs()) {
+  EigenPeer(const kernels::DenseShape& shape, const float* flat, int n) : n_(n), inputs_(shape.inputs()) {
     for (const FlatLayer& layer : FlatLayers(shape, flat)) {
       weights_.push_back(Eigen::Map<const RowMajor>(layer.weights, layer.out, layer.in));
       biases_.push_back(Eigen::Map<const Eigen::VectorXf>(layer.biases, layer.out));
@@ -36,7 +36,7 @@ class EigenPeer : public InferencePeer {
 
 }  // namespace
 
-std::unique_ptr<InferencePeer> MakeEigen(const DenseShape& shape, const float* flat, int n) {
+std::unique_ptr<InferencePeer> MakeEigen(const kernels::DenseShape& shape, const float* flat, int n) {
   return std::make_unique<EigenPeer>(shape, flat, n);
 }
 

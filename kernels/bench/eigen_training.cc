@@ -18,7 +18,7 @@ struct Parameter {
   explicit Parameter(const Array& start)
       : value(start), gradient(start), m(Array::Zero(start.rows(), start.cols())), v(m) {}
 
-  void Update(const TrainOptions& o, float rate, float root_factor) {
+  void Update(const kernels::TrainOptions& o, float rate, float root_factor) {
     const auto g = gradient.array();
     m.array() = static_cast<float>(o.beta1) * m.array() + static_cast<float>(1.0 - o.beta1) * g;
     v.array() = static_cast<float>(o.beta2) * v.array() + static_cast<float>(1.0 - o.beta2) * g * g;
@@ -32,7 +32,8 @@ enum class Draws { kEigens, kOurs };
 
 class EigenTraining : public TrainingPeer {
  public:
-  EigenTraining(const DenseShape& shape, const float* flat, const TrainOptions& options, Draws draws)
+  EigenTraining(const kernels::DenseShape& shape, const float* flat, const kernels::TrainOptions& options,
+                Draws draws)
       : shape_(shape), options_(options), draws_(draws) {
     for (const FlatLayer& layer : FlatLayers(shape, flat)) {
       weights_.emplace_back(MatrixXf(Eigen::Map<const RowMajor>(layer.weights, layer.out, layer.in)));
@@ -111,8 +112,8 @@ class EigenTraining : public TrainingPeer {
     }
   }
 
-  DenseShape shape_;
-  TrainOptions options_;
+  kernels::DenseShape shape_;
+  kernels::TrainOptions options_;
   Draws draws_;
   std::minstd_rand random_;
   std::vector<std::uint32_t> keys_;
@@ -125,13 +126,14 @@ class EigenTraining : public TrainingPeer {
 
 }  // namespace
 
-std::unique_ptr<TrainingPeer> MakeEigenTraining(const DenseShape& shape, const float* flat,
-                                                const TrainOptions& options) {
+std::unique_ptr<TrainingPeer> MakeEigenTraining(const kernels::DenseShape& shape, const float* flat,
+                                                const kernels::TrainOptions& options) {
   return std::make_unique<EigenTraining>(shape, flat, options, Draws::kEigens);
 }
 
-std::unique_ptr<TrainingPeer> MakeEigenTrainingWithOurDraws(const DenseShape& shape, const float* flat,
-                                                            const TrainOptions& options) {
+std::unique_ptr<TrainingPeer> MakeEigenTrainingWithOurDraws(const kernels::DenseShape& shape,
+                                                            const float* flat,
+                                                            const kernels::TrainOptions& options) {
   return std::make_unique<EigenTraining>(shape, flat, options, Draws::kOurs);
 }
 

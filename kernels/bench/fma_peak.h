@@ -6,7 +6,7 @@
 namespace ed3r::bench {
 
 // Runs the loop once, some ten microseconds, and returns the floating-point operations that it did.
-double RunFmaPeak(SimdLevel level);
+double RunFmaPeak(kernels::SimdLevel level);
 
 double RunFmaPeakScalar();
 double RunFmaPeakAvx2();

@@ -19,9 +19,9 @@ namespace ed3r::bench {
 
 double RunFmaPeakScalar() { return FmaPeakLoop(); }
 
-double RunFmaPeak(SimdLevel level) {
-  if (level == SimdLevel::kAvx512) return RunFmaPeakAvx512();
-  if (level == SimdLevel::kAvx2) return RunFmaPeakAvx2();
+double RunFmaPeak(kernels::SimdLevel level) {
+  if (level == kernels::SimdLevel::kAvx512) return RunFmaPeakAvx512();
+  if (level == kernels::SimdLevel::kAvx2) return RunFmaPeakAvx2();
   return RunFmaPeakScalar();
 }
 

@@ -16,7 +16,7 @@ constexpr auto kF32 = memory::data_type::f32;
 // One inner product per layer with bias and ReLU fused in; weights in the layout that oneDNN asks for.
 class OneDnnPeer : public InferencePeer {
  public:
-  OneDnnPeer(const DenseShape& shape, const float* flat, int n)
+  OneDnnPeer(const kernels::DenseShape& shape, const float* flat, int n)
       : engine_(dnnl::engine::kind::cpu, 0), stream_(engine_) {
     omp_set_num_threads(1);
     for (const FlatLayer& layer : FlatLayers(shape, flat)) AddLayer(layer, n, layer.out > 1);
@@ -64,7 +64,7 @@ class OneDnnPeer : public InferencePeer {
 
 }  // namespace
 
-std::unique_ptr<InferencePeer> MakeOneDnn(const DenseShape& shape, const float* flat, int n) {
+std::unique_ptr<InferencePeer> MakeOneDnn(const kernels::DenseShape& shape, const float* flat, int n) {
   return std::make_unique<OneDnnPeer>(shape, flat, n);
 }
 

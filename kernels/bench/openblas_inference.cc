@@ -9,10 +9,11 @@ namespace {
 
 class OpenBlasPeer : public InferencePeer {
  public:
-  OpenBlasPeer(const DenseShape& shape, const float* flat, int n)
-      : n_(n), flat_(flat, flat + ParameterCount(shape)), layers_(FlatLayers(shape, flat_.data())) {
+  OpenBlasPeer(const kernels::DenseShape& shape, const float* flat, int n)
+      : n_(n), flat_(flat, flat + kernels::ParameterCount(shape)), layers_(FlatLayers(shape, flat_.data())) {
     openblas_set_num_threads(1);
-    for (std::vector<float>& h : activations_) h.resize(static_cast<std::size_t>(WidestLayer(shape)) * n);
+    for (std::vector<float>& h : activations_)
+      h.resize(static_cast<std::size_t>(kernels::WidestLayer(shape)) * n);
   }
 
   void Values(const float* inputs, float* values) override {
@@ -50,7 +51,7 @@ class OpenBlasPeer : public InferencePeer {
 
 }  // namespace
 
-std::unique_ptr<InferencePeer> MakeOpenBlas(const DenseShape& shape, const float* flat, int n) {
+std::unique_ptr<InferencePeer> MakeOpenBlas(const kernels::DenseShape& shape, const float* flat, int n) {
   return std::make_unique<OpenBlasPeer>(shape, flat, n);
 }
 

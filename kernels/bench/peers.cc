@@ -33,7 +33,7 @@ std::vector<NamedTrainingPeer> TrainingPeers([[maybe_unused]] std::vector<std::s
   return peers;
 }
 
-std::vector<FlatLayer> FlatLayers(const DenseShape& shape, const float* flat) {
+std::vector<FlatLayer> FlatLayers(const kernels::DenseShape& shape, const float* flat) {
   std::vector<FlatLayer> layers;
   for (int l = 0; l < shape.layers; ++l) {
     const int in = shape.sizes[l], out = shape.sizes[l + 1];

@@ -19,7 +19,8 @@ class InferencePeer {
 };
 
 // For n rows; flat as in dense_net.h.
-using MakeInferencePeer = std::unique_ptr<InferencePeer>(const DenseShape& shape, const float* flat, int n);
+using MakeInferencePeer = std::unique_ptr<InferencePeer>(const kernels::DenseShape& shape, const float* flat,
+                                                         int n);
 
 MakeInferencePeer MakeEigen;
 MakeInferencePeer MakeOpenBlas;
@@ -42,8 +43,8 @@ class TrainingPeer {
   virtual double Step(const float* inputs, const float* targets, const std::uint32_t* rows, int n) = 0;
 };
 
-using MakeTrainingPeer = std::unique_ptr<TrainingPeer>(const DenseShape& shape, const float* flat,
-                                                       const TrainOptions& options);
+using MakeTrainingPeer = std::unique_ptr<TrainingPeer>(const kernels::DenseShape& shape, const float* flat,
+                                                       const kernels::TrainOptions& options);
 
 MakeTrainingPeer MakeEigenTraining;
 MakeTrainingPeer MakeEigenTrainingWithOurDraws;  // dropout by the hash of kernels/train.h
@@ -61,6 +62,6 @@ struct FlatLayer {
   const float* biases;
   int in, out;
 };
-std::vector<FlatLayer> FlatLayers(const DenseShape& shape, const float* flat);
+std::vector<FlatLayer> FlatLayers(const kernels::DenseShape& shape, const float* flat);
 
 }  // namespace ed3r::bench

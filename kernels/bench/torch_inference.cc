@@ -10,7 +10,7 @@ namespace {
 
 class TorchPeer : public InferencePeer {
  public:
-  TorchPeer(const DenseShape& shape, const float* flat, int n) : n_(n), inputs_(shape.inputs()) {
+  TorchPeer(const kernels::DenseShape& shape, const float* flat, int n) : n_(n), inputs_(shape.inputs()) {
     at::set_num_threads(1);
     for (const FlatLayer& layer : FlatLayers(shape, flat)) {
       weights_.push_back(torch::from_blob(const_cast<float*>(layer.weights), {layer.out, layer.in}).clone());
@@ -35,7 +35,7 @@ class TorchPeer : public InferencePeer {
 
 }  // namespace
 
-std::unique_ptr<InferencePeer> MakeTorch(const DenseShape& shape, const float* flat, int n) {
+std::unique_ptr<InferencePeer> MakeTorch(const kernels::DenseShape& shape, const float* flat, int n) {
   return std::make_unique<TorchPeer>(shape, flat, n);
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 class TorchTraining : public TrainingPeer {
  public:
-  TorchTraining(const DenseShape& shape, const float* flat, const TrainOptions& options)
+  TorchTraining(const kernels::DenseShape& shape, const float* flat, const kernels::TrainOptions& options)
       : inputs_(shape.inputs()), dropout_(options.dropout) {
     at::set_num_threads(1);
     std::vector<torch::Tensor> parameters;
@@ -54,8 +54,8 @@ class TorchTraining : public TrainingPeer {
 
 }  // namespace
 
-std::unique_ptr<TrainingPeer> MakeTorchTraining(const DenseShape& shape, const float* flat,
-                                                const TrainOptions& options) {
+std::unique_ptr<TrainingPeer> MakeTorchTraining(const kernels::DenseShape& shape, const float* flat,
+                                                const kernels::TrainOptions& options) {
   return std::make_unique<TorchTraining>(shape, flat, options);
 }
 

@@ -9,7 +9,7 @@
 
 #include "studies/metrics/arm.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 
 // One metric of the first `missions` missions of an arm. NaN is "none".
 struct ConvergencePoint {
@@ -25,9 +25,9 @@ struct ConvergencePoint {
 
 // 50, 100, 200, ... and all missions of every arm that has 50; energy, MSR, WER, FP, BD, MSCS and mean
 // duration. Missions are taken in mission order, which is balanced over places and networks.
-std::vector<ConvergencePoint> Convergence(std::span<const ArmData> arms);
+std::vector<ConvergencePoint> Convergence(std::span<const metrics::ArmData> arms);
 
 // Columns stage,arm,metric,missions,networks,value,half_width,half_width_missions.
 std::string ConvergenceCsv(const std::vector<ConvergencePoint>& points);
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -2,20 +2,20 @@
 
 #include <cmath>
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 constexpr double kNormal95 = 1.959964;
 
 }  // namespace
 
-bool IsPercentage(const Claim& claim) { return claim.unit.starts_with('%') || claim.unit == "points"; }
+bool IsPercentage(const paper::Claim& claim) { return claim.unit.starts_with('%') || claim.unit == "points"; }
 
 double MarginOf(double paper, bool is_percentage) {
   return is_percentage ? kMarginPoints : kMarginShare * std::abs(paper);
 }
 
-double MarginOf(const Claim& claim, double paper) {
+double MarginOf(const paper::Claim& claim, double paper) {
   return claim.tolerance > 0 ? claim.tolerance : MarginOf(paper, IsPercentage(claim));
 }
 
@@ -35,4 +35,4 @@ SizeDifference CompareSizes(double ours, double lo, double hi, double paper, dou
   return result;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

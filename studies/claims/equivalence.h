@@ -8,17 +8,17 @@
 #include "studies/paper/arms.h"
 #include "studies/paper/claims.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 
 // 10 % of a size, 5 points of a percentage. A claim whose words are vague ("about 3 %", "nearly double") brings the margin by
 // which they were read, wider or narrower.
 inline constexpr double kMarginShare = 0.10, kMarginPoints = 5.0;
 double MarginOf(double paper, bool is_percentage);
-double MarginOf(const Claim& claim, double paper);
-bool IsPercentage(const Claim& claim);
+double MarginOf(const paper::Claim& claim, double paper);
+bool IsPercentage(const paper::Claim& claim);
 
 // Missions of an arm in the paper. What chance leaves open of its numbers is taken from the spread of our missions.
-inline constexpr double kPaperMissions = kPaperOnlineMissions, kPaperMissionsInP85 = 128;
+inline constexpr double kPaperMissions = paper::kPaperOnlineMissions, kPaperMissionsInP85 = 128;
 
 enum class SizeVerdict {
   kEquivalent,  // all of the interval lies within the margin, which begins where the rounding ends
@@ -38,4 +38,4 @@ struct SizeDifference {
 SizeDifference CompareSizes(double ours, double lo, double hi, double paper, double paper_sd, double rounding,
                             double margin);
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -10,7 +10,7 @@
 #include "studies/metrics/definitions.h"
 #include "studies/paper/arms.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 struct Weight {
@@ -28,15 +28,15 @@ Quantity Difference(const Formula& leaf) {
 }
 
 Weight WeighLeaf(const Formula& leaf, double tolerance, const ResampledArms& arms) {
-  const Resampled difference = arms.Of(Difference(leaf));
-  const Uncertainty uncertainty = UncertaintyOf(difference);
+  const statistics::Resampled difference = arms.Of(Difference(leaf));
+  const statistics::Uncertainty uncertainty = statistics::UncertaintyOf(difference);
   if (leaf.kind == Formula::Kind::kLess) {
-    const Sides sides = TestAgainst(difference, uncertainty, 0);
+    const statistics::Sides sides = statistics::TestAgainst(difference, uncertainty, 0);
     return {sides.above, sides.below, &leaf};
   }
   // Similar: two one-sided tests against the ends of the tolerance.
-  const Sides upper = TestAgainst(difference, uncertainty, tolerance);
-  const Sides lower = TestAgainst(difference, uncertainty, -tolerance);
+  const statistics::Sides upper = statistics::TestAgainst(difference, uncertainty, tolerance);
+  const statistics::Sides lower = statistics::TestAgainst(difference, uncertainty, -tolerance);
   return {std::max(upper.below, lower.above), std::min(upper.above, lower.below), &leaf};
 }
 
@@ -64,10 +64,11 @@ struct Printed {
   double value = kNoNumber, half_unit = 0;
 };
 
-Printed PaperDifference(const Formula& leaf, const std::vector<Claim>& claims) {
+Printed PaperDifference(const Formula& leaf, const std::vector<paper::Claim>& claims) {
   Printed printed;
   printed.value = ValueOf(Difference(leaf), [&](const Cell& cell) {
-    const auto paper = FindPaperValue(claims, cell.arm, MetricDefinitions()[cell.metric].name);
+    const auto paper =
+        paper::FindPaperValue(claims, cell.arm, metrics::MetricDefinitions()[cell.metric].name);
     if (!paper) return kNoNumber;
     printed.half_unit += paper->half_unit;
     return paper->value;
@@ -86,17 +87,18 @@ bool IsLinear(const Quantity& quantity) {
          std::all_of(quantity.of.begin(), quantity.of.end(), IsLinear);
 }
 
-bool SizesAgree(const Formula& formula, const ResampledArms& arms, const std::vector<Claim>& claims) {
+bool SizesAgree(const Formula& formula, const ResampledArms& arms, const std::vector<paper::Claim>& claims) {
   if (HasAlternatives(formula)) return false;
   bool any = false;
   for (const Formula* leaf : LeavesOf(formula)) {
     const Printed paper = PaperDifference(*leaf, claims);
     if (std::isnan(paper.value)) return false;
     const Quantity difference = Difference(*leaf);
-    const Resampled ours = arms.Of(difference);
-    const Uncertainty uncertainty = UncertaintyOf(ours);
+    const statistics::Resampled ours = arms.Of(difference);
+    const statistics::Uncertainty uncertainty = statistics::UncertaintyOf(ours);
     const std::vector<Cell> cells = CellsOf(difference);
-    const bool percentage = MetricDefinitions()[cells.front().metric].unit == "%" && IsLinear(difference);
+    const bool percentage =
+        metrics::MetricDefinitions()[cells.front().metric].unit == "%" && IsLinear(difference);
     const SizeDifference size = CompareSizes(ours.value, uncertainty.lo, uncertainty.hi, paper.value,
                                              uncertainty.sd_missions * arms.ToPaperSize(cells),
                                              paper.half_unit, MarginOf(paper.value, percentage));
@@ -121,23 +123,23 @@ double SdOfShareAt(double paper_pct, double ours_pct, double sd_of_ours, double 
 }
 
 double PaperSdOf(const Cell& cell, double paper, double ours, double sd_of_ours) {
-  const double missions = IsP85Name(cell.arm) ? kPaperMissionsInP85 : kPaperMissions;
-  const MetricDefinition& metric = MetricDefinitions()[cell.metric];
+  const double missions = paper::IsP85Name(cell.arm) ? kPaperMissionsInP85 : kPaperMissions;
+  const metrics::MetricDefinition& metric = metrics::MetricDefinitions()[cell.metric];
   if (std::isnan(paper)) return sd_of_ours;
-  if (metric.estimate == Estimate::kRate) return SdOfShareAt(paper, kNoNumber, kNoNumber, missions);
+  if (metric.estimate == metrics::Estimate::kRate) return SdOfShareAt(paper, kNoNumber, kNoNumber, missions);
   return metric.name == "wer_pct" ? SdOfShareAt(paper, ours, sd_of_ours, missions) : sd_of_ours;
 }
 
 }  // namespace
 
-Evidence WeighOrder(const Claim& claim, const Formula& formula, const ResampledArms& arms,
-                    const std::vector<Claim>& claims) {
+Evidence WeighOrder(const paper::Claim& claim, const Formula& formula, const ResampledArms& arms,
+                    const std::vector<paper::Claim>& claims) {
   const Weight weight = Weigh(formula, claim.tolerance, arms);
   Evidence evidence;
   evidence.directional = true;
   evidence.p_for = weight.p_for, evidence.p_against = weight.p_against;
-  const Resampled difference = arms.Of(Difference(*weight.leaf));
-  const Uncertainty uncertainty = UncertaintyOf(difference);
+  const statistics::Resampled difference = arms.Of(Difference(*weight.leaf));
+  const statistics::Uncertainty uncertainty = statistics::UncertaintyOf(difference);
   evidence.ours = difference.value, evidence.lo = uncertainty.lo, evidence.hi = uncertainty.hi;
   evidence.paper = PaperDifference(*weight.leaf, claims).value;
   evidence.sizes_agree = SizesAgree(formula, arms, claims);
@@ -145,17 +147,18 @@ Evidence WeighOrder(const Claim& claim, const Formula& formula, const ResampledA
   return evidence;
 }
 
-Evidence WeighNumber(const Claim& claim, const Quantity& quantity, const ResampledArms& arms) {
+Evidence WeighNumber(const paper::Claim& claim, const Quantity& quantity, const ResampledArms& arms) {
   Evidence evidence;
-  if (const auto paper = PaperValueOf(claim)) evidence.paper = paper->value;
-  const Resampled number = arms.Of(quantity);
-  const Uncertainty uncertainty = UncertaintyOf(number);
+  if (const auto paper = paper::PaperValueOf(claim)) evidence.paper = paper->value;
+  const statistics::Resampled number = arms.Of(quantity);
+  const statistics::Uncertainty uncertainty = statistics::UncertaintyOf(number);
   evidence.own_sd = uncertainty.sd_missions;
   evidence.paper_sd = uncertainty.sd_missions * arms.ToPaperSize(CellsOf(quantity));
-  if (IsPlainCell(quantity) && !IsP85Name(quantity.cell.arm)) {
-    const MetricValue& ours = arms.TableValue(quantity.cell);
+  if (IsPlainCell(quantity) && !paper::IsP85Name(quantity.cell.arm)) {
+    const metrics::MetricValue& ours = arms.TableValue(quantity.cell);
     evidence.ours = ours.value, evidence.lo = ours.lo, evidence.hi = ours.hi;
-    evidence.exact = MetricDefinitions()[quantity.cell.metric].estimate == Estimate::kMaximum;
+    evidence.exact =
+        metrics::MetricDefinitions()[quantity.cell.metric].estimate == metrics::Estimate::kMaximum;
     evidence.paper_sd = PaperSdOf(quantity.cell, evidence.paper, evidence.ours, evidence.paper_sd);
     return evidence;
   }
@@ -170,11 +173,11 @@ Evidence WeighNumber(const Claim& claim, const Quantity& quantity, const Resampl
   }
   evidence.directional = true;
   const double no_difference = quantity.kind == Quantity::Kind::kDivide ? 1 : 0;
-  const Sides sides = TestAgainst(number, uncertainty, no_difference);
+  const statistics::Sides sides = statistics::TestAgainst(number, uncertainty, no_difference);
   const bool more = evidence.paper > no_difference;
   evidence.p_for = more ? sides.above : sides.below;
   evidence.p_against = more ? sides.below : sides.above;
   return evidence;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -9,7 +9,7 @@
 #include "studies/claims/resampled_arms.h"
 #include "studies/paper/claims.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
@@ -27,10 +27,10 @@ struct Evidence {
 };
 
 // An order or similarity. All arms must be there.
-Evidence WeighOrder(const Claim& claim, const Formula& formula, const ResampledArms& arms,
-                    const std::vector<Claim>& claims);
+Evidence WeighOrder(const paper::Claim& claim, const Formula& formula, const ResampledArms& arms,
+                    const std::vector<paper::Claim>& claims);
 
 // A number of one or several arms, or a comparison ("ratio"). All arms must be there.
-Evidence WeighNumber(const Claim& claim, const Quantity& quantity, const ResampledArms& arms);
+Evidence WeighNumber(const paper::Claim& claim, const Quantity& quantity, const ResampledArms& arms);
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

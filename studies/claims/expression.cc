@@ -11,7 +11,7 @@
 #include "engine/core/check.h"
 #include "studies/metrics/definitions.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 using Kind = Quantity::Kind;
@@ -70,9 +70,9 @@ std::string Render(const Quantity& quantity, bool with_metrics, bool inside) {
     case Kind::kNumber:
       return fmt::format("{}", quantity.number);
     case Kind::kCell:
-      return with_metrics
-                 ? fmt::format("{}({})", MetricDefinitions()[quantity.cell.metric].name, quantity.cell.arm)
-                 : quantity.cell.arm;
+      return with_metrics ? fmt::format("{}({})", metrics::MetricDefinitions()[quantity.cell.metric].name,
+                                        quantity.cell.arm)
+                          : quantity.cell.arm;
     case Kind::kAdd:
     case Kind::kSubtract: {
       const std::string text = part(0) + std::string(SymbolOf(quantity.kind)) + part(1);
@@ -200,4 +200,4 @@ std::string TextOf(const Formula& leaf) {
          Render(leaf.right, several, false);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

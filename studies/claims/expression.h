@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::claims {
 
 // One metric of one arm.
 struct Cell {
@@ -85,4 +85,4 @@ std::string CanonicalText(const Expression& expression);
 std::string TextOf(const Quantity& quantity);
 std::string TextOf(const Formula& leaf);
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -12,7 +12,7 @@
 #include "studies/metrics/definitions.h"
 #include "studies/paper/arms.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 using Kind = Quantity::Kind;
@@ -21,7 +21,7 @@ using List = std::vector<Quantity>;
 const std::vector<std::string>& OnlineArms() {
   static const std::vector<std::string> arms = [] {
     std::vector<std::string> names;
-    for (const PaperArm& arm : PaperArms())
+    for (const paper::PaperArm& arm : paper::PaperArms())
       if (!arm.warmup) names.emplace_back(arm.name);
     return names;
   }();
@@ -68,13 +68,15 @@ Formula Combine(Formula::Kind kind, std::vector<Formula> of) {
 
 // "a dominates b": a spends less and succeeds more often.
 Formula Dominates(const std::string& a, const std::string& b) {
-  const std::size_t energy = MetricIndex("total_energy_kj"), success = MetricIndex("msr_pct");
+  const std::size_t energy = metrics::MetricIndex("total_energy_kj"),
+                    success = metrics::MetricIndex("msr_pct");
   return Combine(Formula::Kind::kAll, {Less(CellQuantity(a, energy), CellQuantity(b, energy)),
                                        Less(CellQuantity(b, success), CellQuantity(a, success))});
 }
 
 Formula DoesNotDominate(const std::string& a, const std::string& b) {
-  const std::size_t energy = MetricIndex("total_energy_kj"), success = MetricIndex("msr_pct");
+  const std::size_t energy = metrics::MetricIndex("total_energy_kj"),
+                    success = metrics::MetricIndex("msr_pct");
   return Combine(Formula::Kind::kAny, {Less(CellQuantity(b, energy), CellQuantity(a, energy)),
                                        Less(CellQuantity(a, success), CellQuantity(b, success))});
 }
@@ -244,8 +246,9 @@ class Parser {
 
   std::size_t FindMetric(std::string_view name, std::size_t column) const {
     std::vector<std::string> names;
-    for (const MetricDefinition& metric : MetricDefinitions()) names.emplace_back(metric.name);
-    if (std::find(names.begin(), names.end(), name) != names.end()) return MetricIndex(name);
+    for (const metrics::MetricDefinition& metric : metrics::MetricDefinitions())
+      names.emplace_back(metric.name);
+    if (std::find(names.begin(), names.end(), name) != names.end()) return metrics::MetricIndex(name);
     const std::string nearest = NearestWord(name, names);
     Fail(column, fmt::format("'{}' is no metric{}", name,
                              nearest.empty() ? "" : fmt::format(" (nearest: {})", nearest)));
@@ -349,7 +352,7 @@ class Parser {
 const std::vector<std::string>& StudyArms() {
   static const std::vector<std::string> arms = [] {
     std::vector<std::string> all = OnlineArms();
-    for (const std::string& arm : OnlineArms()) all.push_back(P85Name(arm));
+    for (const std::string& arm : OnlineArms()) all.push_back(paper::P85Name(arm));
     return all;
   }();
   return arms;
@@ -359,4 +362,4 @@ Expression ParseExpression(std::string_view text, std::string_view metric) {
   return Parser(text, metric).Parse();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -8,7 +8,7 @@
 #include "studies/claims/equivalence.h"
 #include "studies/statistics/intervals.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 // The scale on which networks spread alike: logit for percentages of one arm, the number itself for all else.
@@ -35,7 +35,7 @@ double Mean(const std::vector<double>& values) {
 }  // namespace
 
 Luck LuckOf(const JudgedClaim& judged) {
-  const auto paper = PaperValueOf(judged.claim);
+  const auto paper = paper::PaperValueOf(judged.claim);
   if (judged.all.verdict != Verdict::kDiffers || !paper) return Luck::kNone;
   const Scale scale{IsPercentage(judged.claim) && judged.claim.kind != "ratio"};
   std::vector<double> values, own_variances, paper_variances;
@@ -58,11 +58,11 @@ Luck LuckOf(const JudgedClaim& judged) {
     variance = std::max(0.0, spread - Mean(own_variances)) + Mean(paper_variances);
     of_a_network = std::max(spread, Mean(own_variances));  // few networks may lie close by chance
   }
-  const double reach = StudentT95(count - 1.0) * std::sqrt(variance + of_a_network / count);
+  const double reach = statistics::StudentT95(count - 1.0) * std::sqrt(variance + of_a_network / count);
   const double lo = scale.From(mean - reach) - paper->half_unit;
   const double hi = scale.From(mean + reach) + paper->half_unit;
   if (paper->value < lo || hi < paper->value) return Luck::kNone;
   return hi - lo > kWidestLuck * MarginOf(judged.claim, paper->value) ? Luck::kTooWide : Luck::kWithin;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

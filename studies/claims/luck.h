@@ -4,7 +4,7 @@
 
 #include "studies/claims/verdicts.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 
 // Where one more network's value, judged on as many missions as the paper's, would lie with 95 % (prediction interval over our
 // networks; on the logit scale for percentages of one arm). kTooWide: the band is so wide, more than kWidestLuck margins, that
@@ -12,4 +12,4 @@ namespace ed3r {
 inline constexpr double kWidestLuck = 4.0;
 Luck LuckOf(const JudgedClaim& judged);
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -12,46 +12,47 @@
 #include "studies/claims/equivalence.h"
 #include "studies/paper/arms.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-bool IsTotals(Estimate estimate) {
-  return estimate != Estimate::kMaximum && estimate != Estimate::kPercentile85;
+bool IsTotals(metrics::Estimate estimate) {
+  return estimate != metrics::Estimate::kMaximum && estimate != metrics::Estimate::kPercentile85;
 }
 
-std::set<std::int64_t> NetworksOf(const ArmData& arm) {
+std::set<std::int64_t> NetworksOf(const metrics::ArmData& arm) {
   std::set<std::int64_t> networks;
-  for (const MissionRecord& mission : arm.missions) networks.insert(mission.network);
+  for (const mission::MissionRecord& mission : arm.missions) networks.insert(mission.network);
   return networks;
 }
 
-const ArmData* FindArm(const std::vector<const ArmData*>& arms, std::string_view name) {
-  for (const ArmData* arm : arms)
-    if (arm->name == name || P85Name(arm->name) == name) return arm;
+const metrics::ArmData* FindArm(const std::vector<const metrics::ArmData*>& arms, std::string_view name) {
+  for (const metrics::ArmData* arm : arms)
+    if (arm->name == name || paper::P85Name(arm->name) == name) return arm;
   return nullptr;
 }
 
 // Whether `name` is the P85 group of an arm with too few missions for one.
-bool IsSmallGroup(const ArmData& arm, const std::string& name) {
-  return arm.name != name && SizeOfP85(arm.missions.size()) < kFewestInP85;
+bool IsSmallGroup(const metrics::ArmData& arm, const std::string& name) {
+  return arm.name != name && metrics::SizeOfP85(arm.missions.size()) < kFewestInP85;
 }
 
 // What mission adds to the two totals of a metric. Look-forward accuracy is relative to the worst mission of the arm that the
 // network flew (as in the tables), which stays the same in every resample: what is said of it holds for those worst
 // missions.
-std::pair<double, double> Contribution(const MetricDefinition& metric, const MissionRecord& mission,
-                                       const WorstErrors& worst_errors) {
+std::pair<double, double> Contribution(const metrics::MetricDefinition& metric,
+                                       const mission::MissionRecord& mission,
+                                       const metrics::WorstErrors& worst_errors) {
   const double part = metric.part(mission), whole = metric.whole(mission);
-  if (metric.estimate != Estimate::kLookForward) return {whole == 0 ? 0 : part, whole};
+  if (metric.estimate != metrics::Estimate::kLookForward) return {whole == 0 ? 0 : part, whole};
   if (whole == 0) return {0, 0};
   const double worst = worst_errors.at(mission.network);
   return {worst > 0 ? 1 - part / whole / worst : 1, 1};
 }
 
 // Missions in the order in which a P85 group takes them; in mission order where all count.
-std::vector<std::size_t> FillingOrder(const ArmData& arm, bool is_p85) {
+std::vector<std::size_t> FillingOrder(const metrics::ArmData& arm, bool is_p85) {
   std::vector<std::size_t> order(arm.missions.size());
   std::iota(order.begin(), order.end(), 0u);
   if (is_p85)
@@ -82,7 +83,7 @@ struct ResampledArms::View {
     if (is_p85) {
       std::int64_t all = 0;
       for (std::size_t i = 0; i < unit.size(); ++i) all += count(i);
-      left = static_cast<std::int64_t>(SizeOfP85(static_cast<std::size_t>(all)));
+      left = static_cast<std::int64_t>(metrics::SizeOfP85(static_cast<std::size_t>(all)));
     }
     const std::size_t columns_per_mission = width();
     for (std::size_t i = 0; i < unit.size() && left > 0; ++i) {
@@ -96,21 +97,23 @@ struct ResampledArms::View {
 
   double ValueOf(std::size_t metric, const std::vector<double>& totals) const {
     const double whole = totals[2 * metric + 1];
-    return whole > 0 ? MetricDefinitions()[metrics[metric]].scale * totals[2 * metric] / whole : kNone;
+    return whole > 0 ? metrics::MetricDefinitions()[metrics[metric]].scale * totals[2 * metric] / whole
+                     : kNone;
   }
 };
 
-ResampledArms::ResampledArms(std::span<const ArmData> arms, const std::vector<Cell>& cells) {
+ResampledArms::ResampledArms(std::span<const metrics::ArmData> arms, const std::vector<Cell>& cells) {
   std::set<std::string> names;
   for (const std::string& name : StudyArms()) names.insert(name);
-  for (const ArmData& arm : arms)
+  for (const metrics::ArmData& arm : arms)
     if (names.count(arm.name) > 0 && !arm.missions.empty() && FindArm(arms_, arm.name) == nullptr)
       arms_.push_back(&arm);
   Pair();
 
   std::map<std::string, std::vector<std::size_t>> wanted;
   for (const Cell& cell : cells)
-    if (const ArmData* arm = FindArm(arms_, cell.arm); arm != nullptr && !IsSmallGroup(*arm, cell.arm))
+    if (const metrics::ArmData* arm = FindArm(arms_, cell.arm);
+        arm != nullptr && !IsSmallGroup(*arm, cell.arm))
       wanted[cell.arm].push_back(cell.metric);
   std::vector<View> views;
   for (const auto& [name, metrics] : wanted) views.push_back(MakeView(name, metrics));
@@ -119,24 +122,24 @@ ResampledArms::ResampledArms(std::span<const ArmData> arms, const std::vector<Ce
 
 ResampledArms::View ResampledArms::MakeView(const std::string& name,
                                             const std::vector<std::size_t>& metrics) {
-  const ArmData& arm = *FindArm(arms_, name);
+  const metrics::ArmData& arm = *FindArm(arms_, name);
   View view{name, arm.name != name, {}, {}, {}, {}};
-  const ArmMetrics values = view.is_p85 ? ComputeP85(arm) : ComputeMetrics(arm);
-  const WorstErrors worst = WorstErrorsOf(arm.missions);
+  const metrics::ArmMetrics values = view.is_p85 ? metrics::ComputeP85(arm) : metrics::ComputeMetrics(arm);
+  const metrics::WorstErrors worst = metrics::WorstErrorsOf(arm.missions);
   for (const std::size_t metric : metrics) {
-    Resampled& cell = cells_[{name, metric}];
+    statistics::Resampled& cell = cells_[{name, metric}];
     cell.value = values.values[metric].value;
     cell.network_count = NetworksOf(arm).size() > 1 ? networks_ : 1;
-    if (!IsTotals(MetricDefinitions()[metric].estimate)) continue;
+    if (!IsTotals(metrics::MetricDefinitions()[metric].estimate)) continue;
     view.metrics.push_back(metric);
   }
   if (!view.is_p85) metrics_.emplace(name, values);
   for (const std::size_t i : FillingOrder(arm, view.is_p85)) {
-    const MissionRecord& mission = arm.missions[i];
+    const mission::MissionRecord& mission = arm.missions[i];
     view.unit.push_back(unit_of_scenario_.at(mission.scenario));
     view.group.push_back(group_of_scenario_.at(mission.scenario));
     for (std::size_t m = 0; m < view.metrics.size(); ++m) {
-      const auto [part, whole] = Contribution(MetricDefinitions()[view.metrics[m]], mission, worst);
+      const auto [part, whole] = Contribution(metrics::MetricDefinitions()[view.metrics[m]], mission, worst);
       view.columns.push_back(part), view.columns.push_back(whole);
     }
   }
@@ -144,8 +147,8 @@ ResampledArms::View ResampledArms::MakeView(const std::string& name,
 }
 
 void ResampledArms::Pair() {
-  const ArmData* leader = nullptr;
-  for (const ArmData* arm : arms_) {
+  const metrics::ArmData* leader = nullptr;
+  for (const metrics::ArmData* arm : arms_) {
     const auto count = static_cast<int>(NetworksOf(*arm).size());
     if (leader == nullptr || count > networks_) leader = arm, networks_ = count;
   }
@@ -154,11 +157,11 @@ void ResampledArms::Pair() {
   const auto index = [&](std::int64_t network) {
     return static_cast<int>(std::distance(networks.begin(), networks.find(network)));
   };
-  for (const MissionRecord& mission : leader->missions)
+  for (const mission::MissionRecord& mission : leader->missions)
     group_of_scenario_[mission.scenario] = index(mission.network);
-  for (const ArmData* arm : arms_) {
+  for (const metrics::ArmData* arm : arms_) {
     const bool takes_turns = NetworksOf(*arm).size() > 1;
-    for (const MissionRecord& mission : arm->missions) {
+    for (const mission::MissionRecord& mission : arm->missions) {
       // A scenario that the leader has not flown (yet): its own network, or the first one's.
       const auto [found, fresh] = group_of_scenario_.try_emplace(mission.scenario, 0);
       const bool known = networks.count(mission.network) > 0;
@@ -173,14 +176,16 @@ void ResampledArms::Pair() {
 void ResampledArms::Resample(const std::vector<View>& views) {
   std::vector<int> group_of_unit;
   for (const auto& [scenario, group] : group_of_scenario_) group_of_unit.push_back(group);
-  const Resampler resampler(group_of_unit, networks_);
+  const statistics::Resampler resampler(group_of_unit, networks_);
   std::vector<int> missions, networks;
   std::vector<double> totals;
   for (int b = 0; b < kResamples; ++b) {
     resampler.DrawMissions(b, missions);
     if (networks_ > 1) resampler.DrawNetworks(b, networks);
     for (const View& view : views) {
-      const auto cell = [&](std::size_t m) -> Resampled& { return cells_.at({view.name, view.metrics[m]}); };
+      const auto cell = [&](std::size_t m) -> statistics::Resampled& {
+        return cells_.at({view.name, view.metrics[m]});
+      };
       view.Sum([&](std::size_t i) { return missions[static_cast<std::size_t>(view.unit[i])]; }, totals);
       for (std::size_t m = 0; m < view.metrics.size(); ++m)
         cell(m).missions.push_back(view.ValueOf(m, totals));
@@ -202,24 +207,24 @@ std::vector<std::string> ResampledArms::Missing(const std::vector<Cell>& cells) 
   return {missing.begin(), missing.end()};
 }
 
-Resampled ResampledArms::Of(const Quantity& quantity) const {
-  Resampled result;
+statistics::Resampled ResampledArms::Of(const Quantity& quantity) const {
+  statistics::Resampled result;
   for (const Cell& cell : CellsOf(quantity))
     result.network_count = std::max(result.network_count, cells_.at(cell).network_count);
   result.value = ValueOf(quantity, [&](const Cell& cell) { return Value(cell); });
-  const auto all = [&](std::vector<double> Resampled::*level, std::vector<double>& values) {
+  const auto all = [&](std::vector<double> statistics::Resampled::*level, std::vector<double>& values) {
     for (std::size_t b = 0; b < static_cast<std::size_t>(kResamples); ++b)
       values.push_back(ValueOf(quantity, [&](const Cell& cell) {
         const std::vector<double>& resamples = cells_.at(cell).*level;
         return resamples.empty() ? kNone : resamples[b];
       }));
   };
-  all(&Resampled::missions, result.missions);
-  if (result.network_count > 1) all(&Resampled::networks, result.networks);
+  all(&statistics::Resampled::missions, result.missions);
+  if (result.network_count > 1) all(&statistics::Resampled::networks, result.networks);
   return result;
 }
 
-const MetricValue& ResampledArms::TableValue(const Cell& cell) const {
+const metrics::MetricValue& ResampledArms::TableValue(const Cell& cell) const {
   return metrics_.at(cell.arm).values[cell.metric];
 }
 
@@ -229,14 +234,15 @@ double ResampledArms::ToPaperSize(const std::vector<Cell>& cells) const {
   return cells.empty() ? kNone : std::sqrt(static_cast<double>(fewest) / kPaperMissions);
 }
 
-std::vector<ArmData> ResampledArms::FlownBy(int network) const {
-  std::vector<ArmData> part;
-  for (const ArmData* arm : arms_) {
-    ArmData& some = part.emplace_back(ArmData{.stage = arm->stage, .name = arm->name, .missions = {}});
-    for (const MissionRecord& mission : arm->missions)
+std::vector<metrics::ArmData> ResampledArms::FlownBy(int network) const {
+  std::vector<metrics::ArmData> part;
+  for (const metrics::ArmData* arm : arms_) {
+    metrics::ArmData& some =
+        part.emplace_back(metrics::ArmData{.stage = arm->stage, .name = arm->name, .missions = {}});
+    for (const mission::MissionRecord& mission : arm->missions)
       if (group_of_scenario_.at(mission.scenario) == network) some.missions.push_back(mission);
   }
   return part;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -13,7 +13,7 @@
 #include "studies/metrics/metrics.h"
 #include "studies/statistics/resampling.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 
 // Enough for percentiles of a 95 % interval; p-values rest on standard deviations, known to 1.6 % then.
 inline constexpr int kResamples = 2000;
@@ -26,18 +26,18 @@ inline constexpr std::size_t kFewestInP85 = 20;
 class ResampledArms {
  public:
   // Resamples every one of `cells` whose arm is there. `arms` must outlive this.
-  ResampledArms(std::span<const ArmData> arms, const std::vector<Cell>& cells);
+  ResampledArms(std::span<const metrics::ArmData> arms, const std::vector<Cell>& cells);
 
   // The arms of `cells` that the run does not have, or has too few missions of for a P85 group; each once.
   std::vector<std::string> Missing(const std::vector<Cell>& cells) const;
 
   double Value(const Cell& cell) const { return cells_.at(cell).value; }
-  const Resampled& At(const Cell& cell) const { return cells_.at(cell); }
-  Resampled Of(const Quantity& quantity) const;
+  const statistics::Resampled& At(const Cell& cell) const { return cells_.at(cell); }
+  statistics::Resampled Of(const Quantity& quantity) const;
 
   // As ComputeMetrics gives it, for the arms themselves; P85 groups have none (their interval must know that
   // the group is chosen by what happened: use At).
-  const MetricValue& TableValue(const Cell& cell) const;
+  const metrics::MetricValue& TableValue(const Cell& cell) const;
 
   // Turns a standard error over the missions at hand into one over as many as the paper flew: of the arm of `cells` with the
   // fewest. (A P85 group is the same share of either.)
@@ -50,7 +50,7 @@ class ResampledArms {
   // The arms with only the missions of scenarios that network number `network` flew (0 .. networks()-1).
   // Which network flew a scenario is what the arm with the most networks says; arms of another rotation are
   // paired with it by scenario all the same.
-  std::vector<ArmData> FlownBy(int network) const;
+  std::vector<metrics::ArmData> FlownBy(int network) const;
 
  private:
   struct View;
@@ -58,12 +58,12 @@ class ResampledArms {
   View MakeView(const std::string& name, const std::vector<std::size_t>& metrics);
   void Resample(const std::vector<View>& views);
 
-  std::vector<const ArmData*> arms_;  // those of the paper that the run has
+  std::vector<const metrics::ArmData*> arms_;  // those of the paper that the run has
   std::map<std::int64_t, int> group_of_scenario_, unit_of_scenario_;
   int networks_ = 1;
   bool networks_disagree_ = false;
-  std::map<Cell, Resampled> cells_;
-  std::map<std::string, ArmMetrics> metrics_;
+  std::map<Cell, statistics::Resampled> cells_;
+  std::map<std::string, metrics::ArmMetrics> metrics_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

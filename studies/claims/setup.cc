@@ -11,17 +11,17 @@
 #include "studies/metrics/metrics.h"
 #include "studies/paper/arms.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
-const ArmData* FindWarmup(std::span<const ArmData> arms) {
-  const auto found = std::find_if(arms.begin(), arms.end(), [](const ArmData& arm) {
+const metrics::ArmData* FindWarmup(std::span<const metrics::ArmData> arms) {
+  const auto found = std::find_if(arms.begin(), arms.end(), [](const metrics::ArmData& arm) {
     return arm.name == "warmup" && !arm.missions.empty();
   });
   return found == arms.end() ? nullptr : &*found;
 }
 
-bool IsOnline(const ArmData& arm) {
+bool IsOnline(const metrics::ArmData& arm) {
   const std::vector<std::string>& names = StudyArms();
   return !arm.missions.empty() && std::find(names.begin(), names.end(), arm.name) != names.end();
 }
@@ -43,7 +43,7 @@ Judgement Counted(double ours, double paper, std::string why) {
 constexpr const char* kOtherLength = "another number of missions than in the paper, on purpose";
 
 // How long a run is, its owner chose: a shorter or longer one than the paper's speaks neither for nor against it.
-Judgement Length(const ArmData& arm, double paper, std::string why) {
+Judgement Length(const metrics::ArmData& arm, double paper, std::string why) {
   Judgement judged = Counted(static_cast<double>(arm.missions.size()), paper, std::move(why));
   if (judged.verdict == Verdict::kReproduced) return judged;
   judged.verdict = Verdict::kNotMeasured;
@@ -53,9 +53,9 @@ Judgement Length(const ArmData& arm, double paper, std::string why) {
 }
 
 // The fewest of the arms that are claimed.
-Judgement MissionsOnline(const Claim& claim, std::span<const ArmData> arms, double paper) {
-  const ArmData* fewest = nullptr;
-  for (const ArmData& arm : arms) {
+Judgement MissionsOnline(const paper::Claim& claim, std::span<const metrics::ArmData> arms, double paper) {
+  const metrics::ArmData* fewest = nullptr;
+  for (const metrics::ArmData& arm : arms) {
     if (!IsOnline(arm)) continue;
     if (claim.strategy != "all" && claim.strategy.find(arm.name) == std::string::npos) continue;
     if (fewest == nullptr || arm.missions.size() < fewest->missions.size()) fewest = &arm;
@@ -65,8 +65,8 @@ Judgement MissionsOnline(const Claim& claim, std::span<const ArmData> arms, doub
 }
 
 // 115K: printed to the thousand.
-Judgement Samples(const ArmData& warmup, double paper) {
-  const MetricValue timesteps = ComputeMetrics(warmup)["timesteps_mean"];
+Judgement Samples(const metrics::ArmData& warmup, double paper) {
+  const metrics::MetricValue timesteps = metrics::ComputeMetrics(warmup)["timesteps_mean"];
   const auto missions = static_cast<double>(warmup.missions.size());
   Judgement judged;
   judged.paper = paper;
@@ -76,17 +76,18 @@ Judgement Samples(const ArmData& warmup, double paper) {
   const bool inside = judged.lo - kHalfThousand <= paper && paper <= judged.hi + kHalfThousand;
   judged.verdict = inside ? Verdict::kReproduced : Verdict::kDiffers;
   judged.why = fmt::format("{:.1f} timesteps in each of {:.0f} warm-up missions", timesteps.value, missions);
-  if (missions != kPaperWarmupMissions) judged.verdict = Verdict::kNotMeasured, judged.why = kOtherLength;
+  if (missions != paper::kPaperWarmupMissions)
+    judged.verdict = Verdict::kNotMeasured, judged.why = kOtherLength;
   return judged;
 }
 
-Judgement SitesUsed(const ArmData& warmup, std::span<const ArmData> arms, double paper) {
+Judgement SitesUsed(const metrics::ArmData& warmup, std::span<const metrics::ArmData> arms, double paper) {
   std::set<std::int64_t> sites, stations, online_sites, online_stations;
-  for (const MissionRecord& mission : warmup.missions)
+  for (const mission::MissionRecord& mission : warmup.missions)
     sites.insert(mission.site), stations.insert(mission.base_station);
-  for (const ArmData& arm : arms) {
+  for (const metrics::ArmData& arm : arms) {
     if (!IsOnline(arm)) continue;
-    for (const MissionRecord& mission : arm.missions)
+    for (const mission::MissionRecord& mission : arm.missions)
       online_sites.insert(mission.site), online_stations.insert(mission.base_station);
   }
   if (online_sites.empty()) return NotThere("the online arms");
@@ -103,15 +104,15 @@ Judgement SitesUsed(const ArmData& warmup, std::span<const ArmData> arms, double
 
 }  // namespace
 
-Judgement JudgeSetup(const Claim& claim, std::span<const ArmData> arms) {
-  const auto paper = PaperValueOf(claim);
+Judgement JudgeSetup(const paper::Claim& claim, std::span<const metrics::ArmData> arms) {
+  const auto paper = paper::PaperValueOf(claim);
   ED3R_CHECK(paper.has_value(), claim.id);
   if (claim.metric == "missions_online") return MissionsOnline(claim, arms, paper->value);
   if (claim.metric == "input_features") {
-    const NetworkDesign& design = claim.strategy == "rc-rfnn" ? kRcNetwork : kRobotNetwork;
+    const rfnn::NetworkDesign& design = claim.strategy == "rc-rfnn" ? rfnn::kRcNetwork : rfnn::kRobotNetwork;
     return Counted(design.inputs(), paper->value, "inputs of the network that the engine trains");
   }
-  const ArmData* warmup = FindWarmup(arms);
+  const metrics::ArmData* warmup = FindWarmup(arms);
   if (warmup == nullptr) return NotThere("the warm-up");
   if (claim.metric == "missions_warmup") return Length(*warmup, paper->value, "warm-up missions flown");
   if (claim.metric == "samples") return Samples(*warmup, paper->value);
@@ -119,4 +120,4 @@ Judgement JudgeSetup(const Claim& claim, std::span<const ArmData> arms) {
   return SitesUsed(*warmup, arms, paper->value);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

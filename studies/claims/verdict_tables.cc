@@ -10,7 +10,7 @@
 #include "studies/metrics/number_text.h"
 #include "studies/tables/layout.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -27,11 +27,11 @@ std::string Spoken(std::string metric) {
 }
 
 std::string Cut(const std::string& text, int width) {
-  if (DisplayWidth(text) <= width) return text;
+  if (tables::DisplayWidth(text) <= width) return text;
   std::string cut;
   for (const char c : text) {
     const bool starts_character = (c & 0xC0) != 0x80;
-    if (starts_character && DisplayWidth(cut) == width - 1) break;
+    if (starts_character && tables::DisplayWidth(cut) == width - 1) break;
     cut += c;
   }
   return cut + "…";
@@ -70,17 +70,19 @@ std::string NetworksText(const JudgedClaim& claim) {
 std::string Line(const std::string& id, const std::string& claim, const std::string& paper,
                  const std::string& ours, const std::string& p, const std::string& verdict,
                  const std::string& networks) {
-  return Pad(id, kIdWidth, Align::kLeft) + Pad(claim, kClaimWidth, Align::kLeft) +
-         Pad(paper, kPaperWidth, Align::kRight) + "  " + Pad(ours, kOursWidth, Align::kLeft) +
-         Pad(p, kPWidth, Align::kRight) + "  " + Pad(verdict, kVerdictWidth, Align::kLeft) + ' ' + networks +
-         '\n';
+  return tables::Pad(id, kIdWidth, tables::Align::kLeft) +
+         tables::Pad(claim, kClaimWidth, tables::Align::kLeft) +
+         tables::Pad(paper, kPaperWidth, tables::Align::kRight) + "  " +
+         tables::Pad(ours, kOursWidth, tables::Align::kLeft) +
+         tables::Pad(p, kPWidth, tables::Align::kRight) + "  " +
+         tables::Pad(verdict, kVerdictWidth, tables::Align::kLeft) + ' ' + networks + '\n';
 }
 
 std::string Table(const ClaimStudy& study) {
   const bool networks = study.networks > 1;
   std::string text =
       Line("", "claim", "paper", "ours [95 % interval]", "p Holm", "verdict", networks ? "alone" : "");
-  text += Rule(kTerminalWidth) + '\n';
+  text += tables::Rule(tables::kTerminalWidth) + '\n';
   for (const JudgedClaim& judged : study.claims) {
     if (judged.all.verdict == Verdict::kNotMeasured) continue;
     const bool order = judged.claim.kind == "order";
@@ -106,9 +108,9 @@ std::string Summary(const ClaimStudy& study) {
       if (const int luck = CountWithinLuck(study); verdict == Verdict::kDiffers && luck > 0)
         parts.back() += fmt::format(" ({} of them no more than one network may)", luck);
     }
-  return Wrap(fmt::format("{} claims, {} of them different: {}.", study.claims.size(), CountDistinct(study),
-                          fmt::join(parts, ", ")),
-              "", kTerminalWidth);
+  return tables::Wrap(fmt::format("{} claims, {} of them different: {}.", study.claims.size(),
+                                  CountDistinct(study), fmt::join(parts, ", ")),
+                      "", tables::kTerminalWidth);
 }
 
 std::string Unmeasured(const ClaimStudy& study) {
@@ -123,9 +125,10 @@ std::string Unmeasured(const ClaimStudy& study) {
   constexpr std::size_t kListed = 40;  // more say nothing that verdicts.csv does not say better
   std::string text;
   for (const auto& [reason, ids] : by_reason)
-    text += ids.size() > kListed
-                ? Wrap(fmt::format("{}: {} claims", reason, ids.size()), "Not measured, ", kTerminalWidth)
-                : Wrap(fmt::format("{}: {}", reason, fmt::join(ids, " ")), "Not measured, ", kTerminalWidth);
+    text += ids.size() > kListed ? tables::Wrap(fmt::format("{}: {} claims", reason, ids.size()),
+                                                "Not measured, ", tables::kTerminalWidth)
+                                 : tables::Wrap(fmt::format("{}: {}", reason, fmt::join(ids, " ")),
+                                                "Not measured, ", tables::kTerminalWidth);
   return text;
 }
 
@@ -163,7 +166,7 @@ constexpr const char* kOneNetworkNote =
     "of the luck of training, which may be larger (training.seeds).";
 
 std::string Notes(const ClaimStudy& study) {
-  const auto wrapped = [](const std::string& text) { return Wrap(text, "", kTerminalWidth); };
+  const auto wrapped = [](const std::string& text) { return tables::Wrap(text, "", tables::kTerminalWidth); };
   std::string notes = wrapped(fmt::format(kRules, 100 * kMarginShare, kMarginPoints));
   if (study.family > 0) notes += wrapped(fmt::format(kOrderNote, study.family));
   if (std::any_of(study.claims.begin(), study.claims.end(), [](const JudgedClaim& judged) {
@@ -179,32 +182,32 @@ Json ByNetworkJson(const JudgedClaim& judged) {
   Json counts = Json::object(), verdicts = Json::array(), ours = Json::array();
   for (const auto& [verdict, count] : CountByNetwork(judged)) counts[std::string(NameOf(verdict))] = count;
   for (const Judgement& alone : judged.by_network)
-    verdicts.push_back(NameOf(alone.verdict)), ours.push_back(JsonNumber(alone.ours));
+    verdicts.push_back(NameOf(alone.verdict)), ours.push_back(metrics::JsonNumber(alone.ours));
   return {{"counts", counts}, {"verdicts", verdicts}, {"ours", ours}};
 }
 
 }  // namespace
 
-std::string ClaimInWords(const Claim& claim, int width) {
+std::string ClaimInWords(const paper::Claim& claim, int width) {
   std::string metric = Spoken(claim.metric);
   std::string what = claim.comparison.empty() ? claim.strategy : claim.comparison;
   if (claim.comparison.empty()) return Cut(what + ' ' + metric, width);
   if (claim.metric == "pareto") metric = "energy and MSR";
   const std::string words = metric + ": " + what;
-  return DisplayWidth(words) <= width ? words : Cut(metric + ", \"" + claim.exact_words + '"', width);
+  return tables::DisplayWidth(words) <= width ? words : Cut(metric + ", \"" + claim.exact_words + '"', width);
 }
 
 std::string VerdictText(const ClaimStudy& study) {
   if (!study.HasArms()) return "";
-  return TrimLineEnds("What the paper claims\n" + Summary(study) + '\n' + Notes(study) + '\n' + Table(study) +
-                      '\n' + Unmeasured(study));
+  return tables::TrimLineEnds("What the paper claims\n" + Summary(study) + '\n' + Notes(study) + '\n' +
+                              Table(study) + '\n' + Unmeasured(study));
 }
 
 Json VerdictJson(const ClaimStudy& study) {
   Json all = Json::array();
   if (!study.HasArms()) return all;
   for (const JudgedClaim& judged : study.claims) {
-    const Claim& claim = judged.claim;
+    const paper::Claim& claim = judged.claim;
     all.push_back({{"id", claim.id},
                    {"where", claim.where},
                    {"strategy", claim.strategy},
@@ -212,17 +215,17 @@ Json VerdictJson(const ClaimStudy& study) {
                    {"kind", claim.kind},
                    {"claim", claim.comparison.empty() ? claim.strategy : claim.comparison},
                    {"words", claim.exact_words},
-                   {"paper", JsonNumber(judged.all.paper)},
-                   {"ours", JsonNumber(judged.all.ours)},
-                   {"lo", JsonNumber(judged.all.lo)},
-                   {"hi", JsonNumber(judged.all.hi)},
-                   {"margin", JsonNumber(judged.all.margin)},
-                   {"difference_lo", JsonNumber(judged.all.difference_lo)},
-                   {"difference_hi", JsonNumber(judged.all.difference_hi)},
-                   {"p", JsonNumber(judged.all.p)},
-                   {"p_against", JsonNumber(judged.all.p_against)},
-                   {"p_holm", JsonNumber(judged.all.p_holm)},
-                   {"p_against_holm", JsonNumber(judged.all.p_against_holm)},
+                   {"paper", metrics::JsonNumber(judged.all.paper)},
+                   {"ours", metrics::JsonNumber(judged.all.ours)},
+                   {"lo", metrics::JsonNumber(judged.all.lo)},
+                   {"hi", metrics::JsonNumber(judged.all.hi)},
+                   {"margin", metrics::JsonNumber(judged.all.margin)},
+                   {"difference_lo", metrics::JsonNumber(judged.all.difference_lo)},
+                   {"difference_hi", metrics::JsonNumber(judged.all.difference_hi)},
+                   {"p", metrics::JsonNumber(judged.all.p)},
+                   {"p_against", metrics::JsonNumber(judged.all.p_against)},
+                   {"p_holm", metrics::JsonNumber(judged.all.p_holm)},
+                   {"p_against_holm", metrics::JsonNumber(judged.all.p_against_holm)},
                    {"verdict", NameOf(judged.all.verdict)},
                    {"luck", NameOf(judged.luck)},
                    {"repeats", judged.repeats},
@@ -245,16 +248,18 @@ std::string VerdictCsv(const ClaimStudy& study) {
   csv += '\n';
   if (!study.HasArms()) return csv;
   for (const JudgedClaim& judged : study.claims) {
-    const Claim& claim = judged.claim;
+    const paper::Claim& claim = judged.claim;
     const std::string& what = claim.comparison.empty() ? claim.strategy : claim.comparison;
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", claim.id,
-                       CsvField(claim.where), CsvField(claim.strategy), claim.metric, claim.kind,
-                       CsvField(what), CsvNumber(judged.all.paper), CsvNumber(judged.all.ours),
-                       CsvNumber(judged.all.lo), CsvNumber(judged.all.hi), CsvNumber(judged.all.margin),
-                       CsvNumber(judged.all.difference_lo), CsvNumber(judged.all.difference_hi),
-                       CsvNumber(judged.all.p), CsvNumber(judged.all.p_against), CsvNumber(judged.all.p_holm),
-                       CsvNumber(judged.all.p_against_holm), NameOf(judged.all.verdict), NameOf(judged.luck),
-                       judged.repeats, CsvField(judged.all.why));
+    csv +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", claim.id,
+                    CsvField(claim.where), CsvField(claim.strategy), claim.metric, claim.kind, CsvField(what),
+                    metrics::CsvNumber(judged.all.paper), metrics::CsvNumber(judged.all.ours),
+                    metrics::CsvNumber(judged.all.lo), metrics::CsvNumber(judged.all.hi),
+                    metrics::CsvNumber(judged.all.margin), metrics::CsvNumber(judged.all.difference_lo),
+                    metrics::CsvNumber(judged.all.difference_hi), metrics::CsvNumber(judged.all.p),
+                    metrics::CsvNumber(judged.all.p_against), metrics::CsvNumber(judged.all.p_holm),
+                    metrics::CsvNumber(judged.all.p_against_holm), NameOf(judged.all.verdict),
+                    NameOf(judged.luck), judged.repeats, CsvField(judged.all.why));
     std::map<Verdict, int> counts = CountByNetwork(judged);
     for (const Verdict verdict : kVerdicts) csv += fmt::format(",{}", counts[verdict]);
     csv += '\n';
@@ -266,10 +271,10 @@ std::string ByNetworkCsv(const ClaimStudy& study) {
   std::string csv = "claim,network,verdict,ours\n";
   for (const JudgedClaim& judged : study.claims)
     for (std::size_t network = 0; judged.asks_networks && network < judged.by_network.size(); ++network)
-      csv +=
-          fmt::format("{},{},{},{}\n", judged.claim.id, network + 1,
-                      NameOf(judged.by_network[network].verdict), CsvNumber(judged.by_network[network].ours));
+      csv += fmt::format("{},{},{},{}\n", judged.claim.id, network + 1,
+                         NameOf(judged.by_network[network].verdict),
+                         metrics::CsvNumber(judged.by_network[network].ours));
   return csv;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

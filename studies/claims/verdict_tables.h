@@ -6,7 +6,7 @@
 
 #include "studies/claims/verdicts.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 
 // A summary (how many of each verdict), a table of what was judged, and one line for each reason why claims
 // were not measured; lines of at most kTerminalWidth characters. Empty where the run has none of the paper's
@@ -26,6 +26,6 @@ std::string VerdictCsv(const ClaimStudy& study);
 std::string ByNetworkCsv(const ClaimStudy& study);
 
 // What is claimed in a few words, at most `width` characters.
-std::string ClaimInWords(const Claim& claim, int width);
+std::string ClaimInWords(const paper::Claim& claim, int width);
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

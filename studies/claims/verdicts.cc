@@ -14,18 +14,18 @@
 #include "studies/paper/arms.h"
 #include "studies/statistics/holm.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 constexpr double kLevel = 0.05;
 
 struct ParsedClaim {
-  const Claim* claim;
+  const paper::Claim* claim;
   std::optional<Expression> expression;  // none for set-up facts and what no run can show
   std::vector<Cell> cells;
 };
 
-ParsedClaim Parse(const Claim& claim) {
+ParsedClaim Parse(const paper::Claim& claim) {
   if (claim.kind == "setup" || !claim.unmeasured.empty()) return {&claim, std::nullopt, {}};
   const std::string_view text = claim.comparison.empty() ? claim.strategy : claim.comparison;
   ParsedClaim parsed{&claim, ParseExpression(text, claim.metric), {}};
@@ -41,8 +41,8 @@ std::string Deviation(const Judgement& judged) {
 }
 
 // None where our missions are too few for an interval.
-std::optional<SizeVerdict> SizeOf(const Claim& claim, bool exact, Judgement& judged) {
-  const PaperValue paper = *PaperValueOf(claim);
+std::optional<SizeVerdict> SizeOf(const paper::Claim& claim, bool exact, Judgement& judged) {
+  const paper::PaperValue paper = *paper::PaperValueOf(claim);
   const double lo = exact ? judged.ours : judged.lo, hi = exact ? judged.ours : judged.hi;
   const SizeDifference size = CompareSizes(judged.ours, lo, hi, paper.value, judged.paper_sd, paper.half_unit,
                                            MarginOf(claim, paper.value));
@@ -70,7 +70,7 @@ void DecideOrder(const Evidence& evidence, bool similarity, Judgement& judged) {
   }
 }
 
-void DecideComparison(const Claim& claim, Judgement& judged) {
+void DecideComparison(const paper::Claim& claim, Judgement& judged) {
   const auto size = SizeOf(claim, false, judged);
   if (!size) return;
   if (judged.p_against_holm < kLevel) {
@@ -85,8 +85,8 @@ void DecideComparison(const Claim& claim, Judgement& judged) {
   }
 }
 
-void DecideNumber(const Claim& claim, bool exact, Judgement& judged) {
-  if (!PaperValueOf(claim)) {  // "n/a"
+void DecideNumber(const paper::Claim& claim, bool exact, Judgement& judged) {
+  if (!paper::PaperValueOf(claim)) {  // "n/a"
     judged.verdict = std::isnan(judged.ours) ? Verdict::kReproduced : Verdict::kDiffers;
     judged.why = "the paper has none";
     return;
@@ -112,10 +112,10 @@ void DecideNumber(const Claim& claim, bool exact, Judgement& judged) {
 }
 
 // The longest mission of many is longer than that of few: it compares with the paper's only at the paper's number.
-bool GrowsWithTheRun(const ParsedClaim& parsed, std::span<const ArmData> arms) {
+bool GrowsWithTheRun(const ParsedClaim& parsed, std::span<const metrics::ArmData> arms) {
   return std::any_of(parsed.cells.begin(), parsed.cells.end(), [&](const Cell& cell) {
-    if (MetricDefinitions()[cell.metric].estimate != Estimate::kMaximum) return false;
-    const auto arm = std::find_if(arms.begin(), arms.end(), [&](const ArmData& data) {
+    if (metrics::MetricDefinitions()[cell.metric].estimate != metrics::Estimate::kMaximum) return false;
+    const auto arm = std::find_if(arms.begin(), arms.end(), [&](const metrics::ArmData& data) {
       return data.name == cell.arm && !data.missions.empty();
     });
     return arm != arms.end() && static_cast<double>(arm->missions.size()) != kPaperMissions;
@@ -130,7 +130,7 @@ bool AsksNetworks(const ParsedClaim& parsed, const ResampledArms& arms) {
 
 // Claims that say the same of the same have the same key; facts of the set-up are each their own.
 std::string KeyOf(const ParsedClaim& parsed) {
-  const Claim& claim = *parsed.claim;
+  const paper::Claim& claim = *parsed.claim;
   if (!parsed.expression) return claim.id;
   return fmt::format("{}|{}|{}|{}", claim.kind, CanonicalText(*parsed.expression), claim.paper_value,
                      claim.tolerance);
@@ -147,8 +147,8 @@ void MarkRepeats(const std::vector<ParsedClaim>& parsed, ClaimStudy& study) {
 // One round: every claim by the missions of one set of arms.
 class Round {
  public:
-  Round(const std::vector<ParsedClaim>& parsed, const std::vector<Claim>& claims,
-        std::span<const ArmData> arms, const ResampledArms& resampled)
+  Round(const std::vector<ParsedClaim>& parsed, const std::vector<paper::Claim>& claims,
+        std::span<const metrics::ArmData> arms, const ResampledArms& resampled)
       : parsed_(parsed), claims_(claims), data_(arms), arms_(resampled) {}
 
   int Family() const { return family_; }
@@ -166,7 +166,7 @@ class Round {
     evidence_.resize(parsed_.size());
     judged_.resize(parsed_.size());
     for (std::size_t i = 0; i < parsed_.size(); ++i) {
-      const Claim& claim = *parsed_[i].claim;
+      const paper::Claim& claim = *parsed_[i].claim;
       const std::vector<std::string> missing = arms_.Missing(parsed_[i].cells);
       if (!claim.unmeasured.empty()) {
         judged_[i].why = claim.unmeasured;
@@ -197,7 +197,8 @@ class Round {
       member[i] = found->second;
       if (fresh) p_for.push_back(evidence_[i]->p_for), p_against.push_back(evidence_[i]->p_against);
     }
-    const std::vector<double> holm_for = HolmAdjust(p_for), holm_against = HolmAdjust(p_against);
+    const std::vector<double> holm_for = statistics::HolmAdjust(p_for),
+                              holm_against = statistics::HolmAdjust(p_against);
     for (std::size_t i = 0; i < parsed_.size(); ++i) {
       if (!evidence_[i] || !evidence_[i]->directional) continue;
       judged_[i].p_holm = holm_for[member[i]];
@@ -208,7 +209,7 @@ class Round {
 
   void Decide(std::size_t i) {
     const Evidence& evidence = *evidence_[i];
-    const Claim& claim = *parsed_[i].claim;
+    const paper::Claim& claim = *parsed_[i].claim;
     Judgement& judged = judged_[i];
     judged.ours = evidence.ours, judged.lo = evidence.lo, judged.hi = evidence.hi;
     judged.paper = evidence.paper;
@@ -226,8 +227,8 @@ class Round {
   }
 
   const std::vector<ParsedClaim>& parsed_;
-  const std::vector<Claim>& claims_;
-  std::span<const ArmData> data_;
+  const std::vector<paper::Claim>& claims_;
+  std::span<const metrics::ArmData> data_;
   const ResampledArms& arms_;
   int family_ = 0;
   std::vector<std::optional<Evidence>> evidence_;
@@ -297,10 +298,10 @@ char LetterOf(Verdict verdict) {
   return '?';
 }
 
-ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData> arms) {
+ClaimStudy JudgeClaims(const std::vector<paper::Claim>& claims, std::span<const metrics::ArmData> arms) {
   std::vector<ParsedClaim> parsed;
   std::vector<Cell> cells;
-  for (const Claim& claim : claims) {
+  for (const paper::Claim& claim : claims) {
     parsed.push_back(Parse(claim));
     cells.insert(cells.end(), parsed.back().cells.begin(), parsed.back().cells.end());
   }
@@ -320,7 +321,7 @@ ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData
     claim.claim = claims[i], claim.all = judged[i];
   }
   for (int network = 0; study.networks > 1 && network < study.networks; ++network) {
-    const std::vector<ArmData> part = all.FlownBy(network);
+    const std::vector<metrics::ArmData> part = all.FlownBy(network);
     const std::vector<Judgement> alone = Round(parsed, claims, part, ResampledArms(part, cells)).Judge();
     for (std::size_t i = 0; i < claims.size(); ++i)
       if (claims[i].kind != "setup") study.claims[i].by_network.push_back(alone[i]);
@@ -357,16 +358,16 @@ int CountDistinct(const ClaimStudy& study) {
 
 int CountReproducedByConstruction(const ClaimStudy& study) {
   return CountDistinctIf(study, [](const JudgedClaim& judged) {
-    const Claim& claim = judged.claim;
+    const paper::Claim& claim = judged.claim;
     const bool built = claim.kind == "setup" || claim.source == "construction" ||
-                       (claim.kind == "value" && !PaperValueOf(claim));
+                       (claim.kind == "value" && !paper::PaperValueOf(claim));
     return built && judged.all.verdict == Verdict::kReproduced;
   });
 }
 
 int CountCalibrated(const ClaimStudy& study) {
   return CountDistinctIf(study, [](const JudgedClaim& judged) {
-    return ArmOfP85Name(judged.claim.strategy) == "rbs" && judged.claim.kind == "value" &&
+    return paper::ArmOfP85Name(judged.claim.strategy) == "rbs" && judged.claim.kind == "value" &&
            judged.all.verdict == Verdict::kEquivalent;
   });
 }
@@ -381,4 +382,4 @@ std::map<Verdict, int> CountByNetwork(const JudgedClaim& claim) {
   return counts;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -33,7 +33,7 @@
 #include "studies/metrics/arm.h"
 #include "studies/paper/claims.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 
 enum class Verdict {
   kReproduced,
@@ -88,7 +88,7 @@ std::string_view NameOf(Luck luck);
 inline constexpr std::string_view kNotInThisRun = "not in this run: ";
 
 struct JudgedClaim {
-  Claim claim;
+  paper::Claim claim;
   Judgement all;  // with every mission
   std::vector<Judgement>
       by_network;  // with the missions of one trained network alone; empty with fewer than two
@@ -113,7 +113,7 @@ struct ClaimStudy {
 
 // Judges `claims` by those of `arms` that bear the paper's names. Throws UserError where a comparison does not
 // parse. Deterministic; 1.1 s for nine arms of 850 missions with five networks, 7 s for 10,000 missions.
-ClaimStudy JudgeClaims(const std::vector<Claim>& claims, std::span<const ArmData> arms);
+ClaimStudy JudgeClaims(const std::vector<paper::Claim>& claims, std::span<const metrics::ArmData> arms);
 
 // Every different claim once.
 std::map<Verdict, int> CountVerdicts(const ClaimStudy& study);
@@ -127,4 +127,4 @@ int CountWithinLuck(const ClaimStudy& study);
 // Of one claim over the single networks.
 std::map<Verdict, int> CountByNetwork(const JudgedClaim& claim);
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -28,7 +28,7 @@
 #include "studies/detection/views.h"
 #include "studies/statistics/resampling.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 namespace {
 
 // What the frames of one view add to the totals.
@@ -76,9 +76,9 @@ int CountOf(const std::vector<ViewTotals>& totals, bool ViewTotals::*what) {
       std::count_if(totals.begin(), totals.end(), [&](const ViewTotals& view) { return view.*what; }));
 }
 
-Difference DifferenceOf(const Resampled& number, bool enough_views) {
+Difference DifferenceOf(const statistics::Resampled& number, bool enough_views) {
   if (!enough_views) return {number.value, {}};
-  const Uncertainty uncertainty = UncertaintyOf(number);
+  const statistics::Uncertainty uncertainty = statistics::UncertaintyOf(number);
   return {number.value, {uncertainty.lo, uncertainty.hi}};
 }
 
@@ -100,10 +100,10 @@ DetectorDifference SecondMinusFirst(std::span<const double> first, std::span<con
   const auto area = [&] { return second_area.Of(counts) - first_area.Of(counts); };
   const auto right = [&] { return MeanOf(totals, &ViewTotals::right, counts); };
   const auto entropy = [&] { return MeanOf(totals, &ViewTotals::cross_entropy, counts); };
-  Resampled areas, rights, entropies;
+  statistics::Resampled areas, rights, entropies;
   areas.value = area(), rights.value = right(), entropies.value = entropy();
   // All views are of one group: there is one network of each kind, and a view is what the resampler calls a mission.
-  const Resampler resampler(std::vector<int>(totals.size(), 0), 1);
+  const statistics::Resampler resampler(std::vector<int>(totals.size(), 0), 1);
   for (int b = 0; b < resamples && enough; ++b) {
     resampler.DrawMissions(b, counts);
     if (enough_of_each) areas.missions.push_back(area());
@@ -117,4 +117,4 @@ DetectorDifference SecondMinusFirst(std::span<const double> first, std::span<con
           .decided_differently = CountOf(totals, &ViewTotals::decided_differently)};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::detection

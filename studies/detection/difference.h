@@ -12,7 +12,7 @@
 #include "studies/detection/frame_set.h"
 #include "studies/statistics/intervals.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 
 // Likelihoods nearer to 0 count as this much: one frame on which a detector is sure and wrong shall not decide a mean.
 // Float confidences near 1 come in steps of 6e-8; what lies beyond is rounding.
@@ -34,8 +34,8 @@ constexpr int kManyResamples = 10000;
 constexpr int kSomeResamples = 1000;
 
 struct Difference {
-  double value;       // NaN where the frames cannot give one
-  Interval interval;  // 95 %; NaN where there are too few views
+  double value;                   // NaN where the frames cannot give one
+  statistics::Interval interval;  // 95 %; NaN where there are too few views
 
   // Chance alone does not explain it.
   bool Distinguishable() const { return interval.lo > 0.0 || interval.hi < 0.0; }
@@ -55,4 +55,4 @@ DetectorDifference SecondMinusFirst(std::span<const double> first, std::span<con
                                     std::span<const FrameLabel> labels,
                                     const std::vector<std::size_t>& chosen, int resamples);
 
-}  // namespace ed3r
+}  // namespace ed3r::detection

@@ -14,7 +14,7 @@
 #include "engine/world/picture_file.h"
 #include "studies/detection/npy.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 namespace {
 
 namespace fs = std::filesystem;
@@ -94,7 +94,7 @@ PictureList ListPictures(const std::string& path) {
 NamedPicture ReadNamedPicture(const std::string& path) {
   NamedPicture named{.name = fs::path(path).filename().string(), .note = {}, .frame = {}};
   if (!IsUtf8(named.name)) throw UserError(fmt::format("{}: its name is not UTF-8 text", path));
-  Picture picture = ReadPicture(path);
+  world::Picture picture = world::ReadPicture(path);
   const cv::Mat& bgr = picture.bgr;
   named.note = std::move(picture.note);
   named.frame = {.frames = 1, .width_px = bgr.cols, .height_px = bgr.rows, .rgb = {}};
@@ -105,4 +105,4 @@ NamedPicture ReadNamedPicture(const std::string& path) {
   return named;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::detection

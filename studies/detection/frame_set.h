@@ -6,7 +6,7 @@
 
 #include "engine/perception/image.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 
 // The renderer's truth about one frame.
 struct FrameLabel {
@@ -20,7 +20,7 @@ struct FrameLabel {
 };
 
 struct FrameSet {
-  FrameStack frames;
+  perception::FrameStack frames;
   std::vector<FrameLabel> labels;  // one per frame
 };
 
@@ -42,10 +42,10 @@ PictureList ListPictures(const std::string& path);
 struct NamedPicture {
   std::string name;  // of the file
   std::string note;  // of ReadPicture
-  FrameStack frame;
+  perception::FrameStack frame;
 };
 
 // Throws UserError, one line that begins with the path, where it cannot be read as a picture.
 NamedPicture ReadNamedPicture(const std::string& path);
 
-}  // namespace ed3r
+}  // namespace ed3r::detection

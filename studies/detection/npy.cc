@@ -11,7 +11,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 namespace {
 
 constexpr std::uint64_t kMaxSidePx = 20000;
@@ -36,7 +36,7 @@ std::optional<std::array<std::uint64_t, 4>> ShapeOf(std::string_view header) {
 
 }  // namespace
 
-FrameStack ParseNpy(std::string_view bytes, const std::string& name) {
+perception::FrameStack ParseNpy(std::string_view bytes, const std::string& name) {
   constexpr std::size_t kStart = 10;  // magic, version, length of the header
   if (bytes.size() < kStart || !bytes.starts_with(std::string_view("\x93NUMPY\x01\x00", 8)))
     throw UserError(fmt::format("{}: is no NPY 1.0 file", name));
@@ -66,4 +66,4 @@ FrameStack ParseNpy(std::string_view bytes, const std::string& name) {
           .rgb = std::vector<std::uint8_t>(pixels.begin(), pixels.end())};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::detection

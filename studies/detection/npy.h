@@ -6,10 +6,10 @@
 
 #include "engine/perception/image.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 
 // `name` stands in messages. Throws UserError for another layout, for sides outside 1 .. 20000 pixels, and for a file
 // whose length is not what its header tells.
-FrameStack ParseNpy(std::string_view bytes, const std::string& name);
+perception::FrameStack ParseNpy(std::string_view bytes, const std::string& name);
 
-}  // namespace ed3r
+}  // namespace ed3r::detection

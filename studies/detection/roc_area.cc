@@ -7,7 +7,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 
 RocArea::RocArea(std::span<const double> confidences, std::span<const FrameLabel> labels,
                  const std::vector<std::size_t>& chosen, std::span<const int> unit_of_chosen) {
@@ -43,4 +43,4 @@ double RocArea::Of(std::span<const int> count_of_unit) const {
          (static_cast<double>(positives) * static_cast<double>(negatives));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::detection

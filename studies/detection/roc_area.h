@@ -6,7 +6,7 @@
 
 #include "studies/detection/frame_set.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 
 // Sorts the frames once; each area after that is one pass over them. Immutable, for any number of threads.
 class RocArea {
@@ -29,4 +29,4 @@ class RocArea {
   std::vector<Frame> frames_;  // by rising confidence
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::detection

@@ -12,7 +12,7 @@
 #include "studies/detection/roc_area.h"
 #include "studies/detection/views.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -38,8 +38,8 @@ double CalibrationError(std::span<const double> confidences, std::span<const Fra
   return chosen.empty() ? kNan : sum / static_cast<double>(chosen.size());
 }
 
-Interval AccuracyInterval(std::span<const double> confidences, std::span<const FrameLabel> labels,
-                          const std::vector<std::size_t>& chosen) {
+statistics::Interval AccuracyInterval(std::span<const double> confidences, std::span<const FrameLabel> labels,
+                                      const std::vector<std::size_t>& chosen) {
   const Views views = ViewsOf(labels, chosen);
   std::vector<double> right(static_cast<std::size_t>(views.count)), frames(right.size());
   for (std::size_t c = 0; c < chosen.size(); ++c) {
@@ -47,7 +47,7 @@ Interval AccuracyInterval(std::span<const double> confidences, std::span<const F
     right[view] += (confidences[chosen[c]] >= kDecision) == labels[chosen[c]].positive ? 1.0 : 0.0;
     frames[view] += 1.0;
   }
-  return ShareInterval(right, frames, ShareUnit::kTimestep);
+  return statistics::ShareInterval(right, frames, statistics::ShareUnit::kTimestep);
 }
 
 // Positives by `value` in [edges[b], edges[b + 1]), each band with all negatives; bands without positives are left out.
@@ -135,4 +135,4 @@ std::vector<Group> ByWorld(std::span<const FrameLabel> labels) {
   return groups;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::detection

@@ -8,16 +8,16 @@
 #include "studies/detection/frame_set.h"
 #include "studies/statistics/intervals.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 
 // "Fire" is said from this confidence on (the frame threshold, R33).
 constexpr double kDecision = 0.5;
 
 struct DetectionScores {
   int true_positives = 0, false_negatives = 0, false_positives = 0, true_negatives = 0;
-  double auc = 0.0;                // area under the ROC curve; NaN where one kind of frame is missing
-  double accuracy = 0.0;           // NaN for no frames
-  Interval accuracy_interval;      // 95 %, frames of one view counted as one draw
+  double auc = 0.0;                        // area under the ROC curve; NaN where one kind of frame is missing
+  double accuracy = 0.0;                   // NaN for no frames
+  statistics::Interval accuracy_interval;  // 95 %, frames of one view counted as one draw
   double calibration_error = 0.0;  // mean |confidence - share of positives| over 10 bins, weighted by frames
 
   int Frames() const { return true_positives + false_negatives + false_positives + true_negatives; }
@@ -39,4 +39,4 @@ std::vector<Group> BySize(std::span<const FrameLabel> labels);  // visible fire 
 std::vector<Group> ByWorld(std::span<const FrameLabel> labels);
 Group All(std::span<const FrameLabel> labels);
 
-}  // namespace ed3r
+}  // namespace ed3r::detection

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-namespace ed3r {
+namespace ed3r::detection {
 
 Views ViewsOf(std::span<const FrameLabel> labels, const std::vector<std::size_t>& chosen) {
   std::map<std::pair<std::string, int>, int> numbers;
@@ -15,4 +15,4 @@ Views ViewsOf(std::span<const FrameLabel> labels, const std::vector<std::size_t>
   return views;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::detection

@@ -6,7 +6,7 @@
 
 #include "studies/detection/frame_set.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 
 struct Views {
   std::vector<int> of_frame;  // for each chosen frame its view, 0 .. count-1, in the order of (world, view)
@@ -14,4 +14,4 @@ struct Views {
 };
 Views ViewsOf(std::span<const FrameLabel> labels, const std::vector<std::size_t>& chosen);
 
-}  // namespace ed3r
+}  // namespace ed3r::detection

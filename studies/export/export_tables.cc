@@ -16,12 +16,12 @@
 #include "engine/store/columns.h"
 #include "engine/store/words.h"
 
-namespace ed3r {
+namespace ed3r::exports {
 namespace {
 
 // "code 9" for one that this version does not know.
 std::string WordOf(std::string_view column, std::int64_t code) {
-  for (const auto& [known, word] : WordsOf(column))
+  for (const auto& [known, word] : store::WordsOf(column))
     if (known == code) return std::string(word);
   return fmt::format("code {}", code);
 }
@@ -44,8 +44,8 @@ class TableFile {
 
 class CsvFile : public TableFile {
  public:
-  CsvFile(const std::filesystem::path& path, const std::vector<Column>& columns) : file_(path) {
-    for (const Column& column : columns) Word(column.name);
+  CsvFile(const std::filesystem::path& path, const std::vector<store::Column>& columns) : file_(path) {
+    for (const store::Column& column : columns) Word(column.name);
     EndRow();
   }
   void Word(std::string_view word) override { Field(CsvField(word)); }
@@ -74,12 +74,12 @@ class CsvFile : public TableFile {
 class NumpyFile : public TableFile {
  public:
   // `width`: characters of a word.
-  NumpyFile(const std::filesystem::path& path, const std::vector<Column>& columns, std::int64_t rows,
+  NumpyFile(const std::filesystem::path& path, const std::vector<store::Column>& columns, std::int64_t rows,
             std::size_t width)
       : file_(path), width_(width) {
     std::string fields;
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      const bool word = i < 2 || !WordsOf(columns[i].name).empty();
+      const bool word = i < 2 || !store::WordsOf(columns[i].name).empty();
       fields += fmt::format("('{}', '{}'), ", columns[i].name,
                             word                 ? fmt::format("<U{}", width)
                             : columns[i].is_real ? "<f8"
@@ -101,8 +101,8 @@ class NumpyFile : public TableFile {
       row_.append(3, '\0');
     }
   }
-  void Integer(std::int64_t value) override { AppendInt(row_, value); }
-  void Real(double value) override { AppendInt(row_, std::bit_cast<std::int64_t>(value)); }
+  void Integer(std::int64_t value) override { store::AppendInt(row_, value); }
+  void Real(double value) override { store::AppendInt(row_, std::bit_cast<std::int64_t>(value)); }
   void EndRow() override {
     file_.Write(row_);
     row_.clear();
@@ -121,7 +121,7 @@ void WriteRow(const RowKey& key, const Record& record, TableFile& table) {
   Record::Describe(record, [&](std::string_view name, const auto& field) {
     if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, double>) {
       table.Real(field);
-    } else if (!WordsOf(name).empty()) {
+    } else if (!store::WordsOf(name).empty()) {
       table.Word(WordOf(name, field));
     } else {
       table.Integer(field);
@@ -130,23 +130,23 @@ void WriteRow(const RowKey& key, const Record& record, TableFile& table) {
   table.EndRow();
 }
 
-std::size_t LongestWord(const RunLayout& layout) {
+std::size_t LongestWord(const store::RunLayout& layout) {
   std::size_t longest = 0;
   const auto see = [&](std::string_view word) { longest = std::max(longest, word.size()); };
-  for (const RunLayout::Stage& stage : layout.stages) {
+  for (const store::RunLayout::Stage& stage : layout.stages) {
     see(stage.name);
-    for (const RunLayout::Arm& arm : stage.arms) see(arm.name);
+    for (const store::RunLayout::Arm& arm : stage.arms) see(arm.name);
   }
   for (const std::string_view column : {"outcome", "motion_rule", "execution"})
-    for (const auto& [code, word] : WordsOf(column)) see(word);
+    for (const auto& [code, word] : store::WordsOf(column)) see(word);
   return longest;
 }
 
 template <class Record>
 std::unique_ptr<TableFile> Open(ExportFormat format, const std::filesystem::path& stem, std::int64_t rows,
                                 std::size_t width, ExportedTable& written) {
-  std::vector<Column> columns = {{"stage"}, {"arm"}, {"mission"}};
-  for (const Column& column : ColumnsOf<Record>()) columns.push_back(column);
+  std::vector<store::Column> columns = {{"stage"}, {"arm"}, {"mission"}};
+  for (const store::Column& column : store::ColumnsOf<Record>()) columns.push_back(column);
   written = {stem.string() + (format == ExportFormat::kCsv ? ".csv" : ".npy"), rows};
   if (format == ExportFormat::kCsv) return std::make_unique<CsvFile>(written.file, columns);
   return std::make_unique<NumpyFile>(written.file, columns, rows, width);
@@ -154,31 +154,33 @@ std::unique_ptr<TableFile> Open(ExportFormat format, const std::filesystem::path
 
 }  // namespace
 
-std::vector<ExportedTable> ExportTables(ResultReader& reader, ExportFormat format,
+std::vector<ExportedTable> ExportTables(store::ResultReader& reader, ExportFormat format,
                                         const std::filesystem::path& folder) {
   MakeFolder(folder);
   std::int64_t missions = 0, timesteps = 0;
-  reader.ForEachMission(Steps::kSkip, [&](const StoredMission& mission) {
+  reader.ForEachMission(store::Steps::kSkip, [&](const store::StoredMission& mission) {
     ++missions;
     if (mission.keeps_timesteps) timesteps += mission.record.timesteps;
   });
-  const RunLayout layout = reader.Layout();
+  const store::RunLayout layout = reader.Layout();
   const std::size_t width = LongestWord(layout);
   std::vector<ExportedTable> written(2);
-  const auto mission_table = Open<MissionRecord>(format, folder / "missions", missions, width, written[0]);
-  const auto step_table = Open<TimestepRecord>(format, folder / "timesteps", timesteps, width, written[1]);
+  const auto mission_table =
+      Open<mission::MissionRecord>(format, folder / "missions", missions, width, written[0]);
+  const auto step_table =
+      Open<mission::TimestepRecord>(format, folder / "timesteps", timesteps, width, written[1]);
   std::int64_t seen = 0;
-  reader.ForEachMission(Steps::kLoad, [&](const StoredMission& mission) {
+  reader.ForEachMission(store::Steps::kLoad, [&](const store::StoredMission& mission) {
     if (++seen > missions) return;  // stored since they were counted
-    const RunLayout::Stage& stage = layout.stages[static_cast<std::size_t>(mission.id.stage)];
+    const store::RunLayout::Stage& stage = layout.stages[static_cast<std::size_t>(mission.id.stage)];
     const RowKey key{stage.name, stage.arms[static_cast<std::size_t>(mission.id.arm)].name,
                      mission.id.mission};
     WriteRow(key, mission.record, *mission_table);
-    for (const TimestepRecord& step : mission.record.steps) WriteRow(key, step, *step_table);
+    for (const mission::TimestepRecord& step : mission.record.steps) WriteRow(key, step, *step_table);
   });
   mission_table->Commit();
   step_table->Commit();
   return written;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::exports

@@ -12,7 +12,7 @@
 
 #include "engine/store/reader.h"
 
-namespace ed3r {
+namespace ed3r::exports {
 
 enum class ExportFormat { kCsv, kNumpy };
 
@@ -25,7 +25,7 @@ struct ExportedTable {
 //   kCsv    missions.csv, timesteps.csv: RFC 4180, numbers in the shortest text that reads back to the same bits
 //   kNumpy  missions.npy, timesteps.npy: one structured array each; words are '<U' texts
 // Every mission is compared with its checksum. Throws UserError.
-std::vector<ExportedTable> ExportTables(ResultReader& reader, ExportFormat format,
+std::vector<ExportedTable> ExportTables(store::ResultReader& reader, ExportFormat format,
                                         const std::filesystem::path& folder);
 
-}  // namespace ed3r
+}  // namespace ed3r::exports

@@ -19,7 +19,7 @@
 
 extern char** environ;
 
-namespace ed3r {
+namespace ed3r::figures {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ DrawResult DrawFigures(const std::string& folder, const std::string& script_name
   return {};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::figures

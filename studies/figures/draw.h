@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace ed3r {
+namespace ed3r::figures {
 
 enum class Drawing {
   kDone,
@@ -23,4 +23,4 @@ struct DrawResult {
 // the folder cannot be written.
 DrawResult DrawFigures(const std::string& folder, const std::string& script = "plot.py");
 
-}  // namespace ed3r
+}  // namespace ed3r::figures

@@ -10,7 +10,7 @@
 #include "studies/tables/data_files.h"
 #include "studies/tables/names.h"
 
-namespace ed3r {
+namespace ed3r::figures {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -26,23 +26,24 @@ Json EtaMin(const ArmPlan* plan) {
 }
 
 Json ArmJson(const FigureInputs& inputs, std::size_t a, const std::string& key, const Json& metrics) {
-  const ArmData& arm = inputs.arms[a];
+  const metrics::ArmData& arm = inputs.arms[a];
   const ArmPlan* plan = PlanOf(inputs.plans, arm);
   const std::string strategy = plan == nullptr ? "" : plan->Setting("mission.strategy");
-  Json json = {{"key", key},
-               {"stage", arm.stage},
-               {"name", arm.name},
-               {"label", key == arm.name ? ArmLabel(arm.name) : arm.stage + '/' + ArmLabel(arm.name)},
-               {"warmup", plan != nullptr && plan->warmup},
-               {"strategy", strategy.empty() ? Json(nullptr) : Json(strategy)},
-               {"eta_min_pct", EtaMin(plan)},
-               {"world", plan == nullptr ? Json(nullptr) : Json(plan->Setting("mission.world"))},
-               {"missions", arm.missions.size()},
-               {"failed", arm.failed},
-               {"missing", arm.missing},
-               {"networks", inputs.metrics[a].networks},
-               {"metrics", Json::object()}};
-  for (const MetricDefinition& definition : MetricDefinitions()) {
+  Json json = {
+      {"key", key},
+      {"stage", arm.stage},
+      {"name", arm.name},
+      {"label", key == arm.name ? tables::ArmLabel(arm.name) : arm.stage + '/' + tables::ArmLabel(arm.name)},
+      {"warmup", plan != nullptr && plan->warmup},
+      {"strategy", strategy.empty() ? Json(nullptr) : Json(strategy)},
+      {"eta_min_pct", EtaMin(plan)},
+      {"world", plan == nullptr ? Json(nullptr) : Json(plan->Setting("mission.world"))},
+      {"missions", arm.missions.size()},
+      {"failed", arm.failed},
+      {"missing", arm.missing},
+      {"networks", inputs.metrics[a].networks},
+      {"metrics", Json::object()}};
+  for (const metrics::MetricDefinition& definition : metrics::MetricDefinitions()) {
     const std::string name(definition.name);
     json["metrics"][name] = metrics.at(name);
   }
@@ -50,7 +51,7 @@ Json ArmJson(const FigureInputs& inputs, std::size_t a, const std::string& key, 
   json["sites"] = SiteSuccess(arm);
   json["known_sites"] = PooledSuccess(arm, true);
   json["unseen_sites"] = PooledSuccess(arm, false);
-  json["convergence"] = ConvergenceJson(arm, Convergence(inputs.arms.subspan(a, 1)));
+  json["convergence"] = ConvergenceJson(arm, claims::Convergence(inputs.arms.subspan(a, 1)));
   return json;
 }
 
@@ -65,12 +66,12 @@ Json FigureJson(const FigureSpec& figure, const std::vector<std::string>& keys) 
 }
 
 Json MissionJson(const ShownMission& mission) {
-  const MissionRecord& record = mission.record;
+  const mission::MissionRecord& record = mission.record;
   Json json = {{"arm", mission.arm},
-               {"label", ArmLabel(mission.arm)},
+               {"label", tables::ArmLabel(mission.arm)},
                {"stage", mission.stage},
                {"mission", mission.number},
-               {"outcome", NameOf(static_cast<Outcome>(record.outcome))},
+               {"outcome", NameOf(static_cast<mission::Outcome>(record.outcome))},
                {"site", record.site},
                {"base_station", record.base_station},
                {"duration_min", Rounded(record.duration_s / 60)},
@@ -79,7 +80,7 @@ Json MissionJson(const ShownMission& mission) {
                {"y_m", {Rounded(record.start_y_m, 1)}},
                {"z_m", {Rounded(record.start_z_m, 1)}},
                {"scs_pct", {nullptr}}};
-  for (const TimestepRecord& step : record.steps) {
+  for (const mission::TimestepRecord& step : record.steps) {
     json["x_m"].push_back(Rounded(step.x_m, 1));
     json["y_m"].push_back(Rounded(step.y_m, 1));
     json["z_m"].push_back(Rounded(step.z_m, 1));
@@ -89,7 +90,7 @@ Json MissionJson(const ShownMission& mission) {
 }
 
 // Heights at nodes wide enough apart for a picture.
-Json GroundJson(const Terrain& ground) {
+Json GroundJson(const world::Terrain& ground) {
   const int stride = std::max(1, (std::max(ground.columns, ground.rows) + kMostNodes - 1) / kMostNodes);
   Json rows = Json::array();
   for (int r = 0; r < ground.rows; r += stride) {
@@ -105,28 +106,28 @@ Json PlaceJson(const std::string& name, const Eigen::Vector3d& at_m, bool known)
   return {{"name", name}, {"x_m", Rounded(at_m.x(), 1)}, {"y_m", Rounded(at_m.y(), 1)}, {"known", known}};
 }
 
-Json WorldJson(const Scene& scene) {
+Json WorldJson(const world::Scene& scene) {
   Json json = {{"name", scene.Name()}, {"size_m", {scene.SizeM().x(), scene.SizeM().y(), scene.SizeM().z()}}};
   json.update(GroundJson(scene.Ground()));
   json["trees"] = Json::array();
-  for (const Tree& tree : scene.Trees())
+  for (const world::Tree& tree : scene.Trees())
     json["trees"].push_back({Rounded(tree.x_m, 1), Rounded(tree.y_m, 1), Rounded(tree.crown_radius_m, 1)});
   json["sites"] = Json::array();
-  for (const FireSite& site : scene.Sites())
+  for (const world::FireSite& site : scene.Sites())
     json["sites"].push_back(PlaceJson(site.name, site.base_m, site.known));
   json["base_stations"] = Json::array();
-  for (const BaseStation& station : scene.BaseStations())
+  for (const world::BaseStation& station : scene.BaseStations())
     json["base_stations"].push_back(PlaceJson(station.name, station.antenna_m, station.known));
   return json;
 }
 
-Json VariantsJson(const VariantStudy& study) {
+Json VariantsJson(const variants::VariantStudy& study) {
   Json json = {{"base", study.variants.front()},
                {"names", std::vector<std::string>(study.variants.begin() + 1, study.variants.end())},
                {"differences", Json::array()}};
-  for (const VariantDifference& d : study.differences)
+  for (const variants::VariantDifference& d : study.differences)
     json["differences"].push_back({{"arm", d.arm},
-                                   {"label", ArmLabel(d.arm)},
+                                   {"label", tables::ArmLabel(d.arm)},
                                    {"variant", d.variant},
                                    {"metric", d.metric},
                                    {"difference", Rounded(d.difference)},
@@ -140,8 +141,8 @@ Json VariantsJson(const VariantStudy& study) {
 
 Json MakeFigureData(const FigureInputs& inputs) {
   ED3R_CHECK(inputs.arms.size() == inputs.metrics.size(), "metrics of every arm");
-  const std::vector<std::string> keys = UniqueArmNames(inputs.metrics);
-  const Json metrics = ResultJson(inputs.metrics, PaperClaims()).at("arms");
+  const std::vector<std::string> keys = tables::UniqueArmNames(inputs.metrics);
+  const Json metrics = tables::ResultJson(inputs.metrics, paper::PaperClaims()).at("arms");
   Json data = {{"format", kFormat}, {"name", inputs.name}, {"units", ColumnUnits()}, {"arms", Json::array()}};
   for (std::size_t a = 0; a < inputs.arms.size(); ++a)
     data["arms"].push_back(ArmJson(inputs, a, keys[a], metrics.at(keys[a])));
@@ -158,4 +159,4 @@ Json MakeFigureData(const FigureInputs& inputs) {
   return data;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::figures

@@ -41,20 +41,20 @@
 #include "studies/metrics/metrics.h"
 #include "studies/variants/variants.h"
 
-namespace ed3r {
+namespace ed3r::figures {
 
 struct FigureInputs {
   std::string name;
-  std::span<const ArmData> arms;
-  std::span<const ArmMetrics> metrics;  // of the arms, in their order
+  std::span<const metrics::ArmData> arms;
+  std::span<const metrics::ArmMetrics> metrics;  // of the arms, in their order
   std::span<const ArmPlan> plans;
   std::span<const ShownMission> missions;
-  std::shared_ptr<const Scene> scene;  // of the missions; null: none
+  std::shared_ptr<const world::Scene> scene;  // of the missions; null: none
   std::string scene_note;
-  const VariantStudy* variants = nullptr;
+  const variants::VariantStudy* variants = nullptr;
 };
 
 // Pure: the same inputs give the same document.
 nlohmann::ordered_json MakeFigureData(const FigureInputs& inputs);
 
-}  // namespace ed3r
+}  // namespace ed3r::figures

@@ -8,7 +8,7 @@
 
 #include "studies/paper/arms.h"
 
-namespace ed3r {
+namespace ed3r::figures {
 namespace {
 
 using Indices = std::vector<std::size_t>;
@@ -29,18 +29,18 @@ constexpr PaperGroup kPaperGroups[] = {
     {"baselines", "ED³R against its baselines", "Result 3, its table as figures"},
 };
 
-bool IsWarmup(std::span<const ArmPlan> plans, const ArmData& arm) {
+bool IsWarmup(std::span<const ArmPlan> plans, const metrics::ArmData& arm) {
   const ArmPlan* plan = PlanOf(plans, arm);
   return plan != nullptr && plan->warmup;
 }
 
-std::string Strategy(std::span<const ArmPlan> plans, const ArmData& arm) {
+std::string Strategy(std::span<const ArmPlan> plans, const metrics::ArmData& arm) {
   const ArmPlan* plan = PlanOf(plans, arm);
   return plan == nullptr ? "" : plan->Setting("mission.strategy");
 }
 
 // The named arms of the last stage that flew two of them at least.
-Indices Together(std::span<const ArmData> arms, std::span<const std::string_view> names) {
+Indices Together(std::span<const metrics::ArmData> arms, std::span<const std::string_view> names) {
   for (auto last = arms.rbegin(); last != arms.rend(); ++last) {
     Indices found;
     for (const std::string_view name : names)
@@ -53,7 +53,7 @@ Indices Together(std::span<const ArmData> arms, std::span<const std::string_view
 }
 
 // `rest` stage by stage, in groups of kGroupArms at most.
-void AddRest(std::span<const ArmData> arms, const Indices& rest, std::vector<Group>& groups) {
+void AddRest(std::span<const metrics::ArmData> arms, const Indices& rest, std::vector<Group>& groups) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < rest.size() && count < kMostGroups; ++count) {
     Group group{fmt::format("arms-{}", count + 1), fmt::format("Stage {}", arms[rest[i]].stage), "", {}};
@@ -64,11 +64,11 @@ void AddRest(std::span<const ArmData> arms, const Indices& rest, std::vector<Gro
   }
 }
 
-std::vector<Group> MakeGroups(std::span<const ArmData> arms, const Indices& drawn) {
+std::vector<Group> MakeGroups(std::span<const metrics::ArmData> arms, const Indices& drawn) {
   std::vector<Group> groups;
   std::set<std::size_t> held;
   for (const PaperGroup& paper : kPaperGroups) {
-    const Indices found = Together(arms, ArmsOfComparison(paper.id));
+    const Indices found = Together(arms, paper::ArmsOfComparison(paper.id));
     if (found.empty()) continue;
     groups.push_back({paper.id, paper.title, paper.paper, found});
     held.insert(found.begin(), found.end());
@@ -81,7 +81,8 @@ std::vector<Group> MakeGroups(std::span<const ArmData> arms, const Indices& draw
 }
 
 // The warm-ups that the networks of the group's arms learnt from: ECD²R has one of its own, RBS needs none.
-Indices WarmupsOf(const Indices& group, std::span<const ArmData> arms, std::span<const ArmPlan> plans) {
+Indices WarmupsOf(const Indices& group, std::span<const metrics::ArmData> arms,
+                  std::span<const ArmPlan> plans) {
   bool own = false, shared = false;
   for (const std::size_t a : group) {
     const std::string strategy = Strategy(plans, arms[a]);
@@ -101,8 +102,8 @@ std::string Counterpart(const Group& group, const char* which) {
   return group.paper.empty() ? "" : fmt::format(" Counterpart of the paper's {} ({}).", which, group.paper);
 }
 
-void AddGroupFigures(const Group& group, std::span<const ArmData> arms, std::span<const ArmPlan> plans,
-                     std::vector<FigureSpec>& figures) {
+void AddGroupFigures(const Group& group, std::span<const metrics::ArmData> arms,
+                     std::span<const ArmPlan> plans, std::vector<FigureSpec>& figures) {
   figures.push_back(
       {"overview-" + group.id, "overview", group.title + ": performance overview",
        "Every point is a mission, in the order of their numbers from left to right: its energy, its mean "
@@ -136,7 +137,7 @@ void AddGroupFigures(const Group& group, std::span<const ArmData> arms, std::spa
        {}});
 }
 
-void AddRunFigures(std::span<const ArmData> arms, const Indices& drawn, std::size_t shown_missions,
+void AddRunFigures(std::span<const metrics::ArmData> arms, const Indices& drawn, std::size_t shown_missions,
                    std::vector<FigureSpec>& figures) {
   if (drawn.size() >= 2)
     figures.push_back(
@@ -202,13 +203,13 @@ FigureSpec VariantFigure(const std::string& first_variant) {
       {}};
 }
 
-const ArmPlan* PlanOf(std::span<const ArmPlan> plans, const ArmData& arm) {
+const ArmPlan* PlanOf(std::span<const ArmPlan> plans, const metrics::ArmData& arm) {
   for (const ArmPlan& plan : plans)
     if (plan.stage == arm.stage && plan.name == arm.name) return &plan;
   return nullptr;
 }
 
-std::vector<FigureSpec> ListFigures(std::span<const ArmData> arms, std::span<const ArmPlan> plans,
+std::vector<FigureSpec> ListFigures(std::span<const metrics::ArmData> arms, std::span<const ArmPlan> plans,
                                     std::size_t shown_missions) {
   Indices drawn, flown;
   for (std::size_t a = 0; a < arms.size(); ++a) {
@@ -224,4 +225,4 @@ std::vector<FigureSpec> ListFigures(std::span<const ArmData> arms, std::span<con
   return figures;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::figures

@@ -9,7 +9,7 @@
 #include "studies/figures/run_source.h"
 #include "studies/metrics/arm.h"
 
-namespace ed3r {
+namespace ed3r::figures {
 
 // One figure: file FILES/ID.png and .svg. `kind` is the drawing: overview | insights | decisions | pareto | sites |
 // convergence | map | variants.
@@ -23,7 +23,7 @@ struct FigureSpec {
 // paper's thresholds, ablations and baselines where two arms of one at least flew in one stage; then the arms that none
 // of these holds, stage by stage, at most kGroupArms in one figure and kMostGroups such groups; warm-ups only where
 // nothing else was flown. `plans` tells warm-ups and strategies; an arm without a plan is none.
-std::vector<FigureSpec> ListFigures(std::span<const ArmData> arms, std::span<const ArmPlan> plans,
+std::vector<FigureSpec> ListFigures(std::span<const metrics::ArmData> arms, std::span<const ArmPlan> plans,
                                     std::size_t shown_missions);
 
 inline constexpr std::size_t kGroupArms = 9;
@@ -36,6 +36,6 @@ inline constexpr std::size_t kConvergenceStart = 100;
 FigureSpec VariantFigure(const std::string& first_variant);
 
 // The plan of an arm, or null.
-const ArmPlan* PlanOf(std::span<const ArmPlan> plans, const ArmData& arm);
+const ArmPlan* PlanOf(std::span<const ArmPlan> plans, const metrics::ArmData& arm);
 
-}  // namespace ed3r
+}  // namespace ed3r::figures

@@ -10,22 +10,23 @@
 #include "engine/store/restored_files.h"
 #include "engine/sweep/plan_text.h"
 
-namespace ed3r {
+namespace ed3r::figures {
 namespace {
 
 // Lower is tried first.
 int Rank(const ArmPlan& plan) { return plan.warmup ? 2 : plan.name == "ed3r-75" ? 0 : 1; }
 
 // The mission of the median duration among those that ended so; equally long ones in mission order.
-std::optional<RunId> MedianMission(ResultReader& reader, int stage, int arm, Outcome outcome) {
+std::optional<sweep::RunId> MedianMission(store::ResultReader& reader, int stage, int arm,
+                                          mission::Outcome outcome) {
   std::vector<std::pair<double, int>> ended_so;
-  reader.ForEachMission(stage, arm, Steps::kSkip, [&](const StoredMission& mission) {
+  reader.ForEachMission(stage, arm, store::Steps::kSkip, [&](const store::StoredMission& mission) {
     if (mission.keeps_timesteps && mission.record.outcome == static_cast<std::int64_t>(outcome))
       ended_so.emplace_back(mission.record.duration_s, mission.id.mission);
   });
   if (ended_so.empty()) return std::nullopt;
   std::sort(ended_so.begin(), ended_so.end());
-  return RunId{stage, arm, ended_so[(ended_so.size() - 1) / 2].second};
+  return sweep::RunId{stage, arm, ended_so[(ended_so.size() - 1) / 2].second};
 }
 
 // Indices of the flying arms of the layout, those that are tried first in front.
@@ -34,7 +35,7 @@ struct Candidate {
   const ArmPlan* plan;
 };
 
-std::vector<Candidate> Candidates(const RunLayout& layout, std::span<const ArmPlan> plans) {
+std::vector<Candidate> Candidates(const store::RunLayout& layout, std::span<const ArmPlan> plans) {
   std::vector<Candidate> candidates;
   for (int s = 0; s < static_cast<int>(layout.stages.size()); ++s)
     for (int a = 0; a < static_cast<int>(layout.stages[s].arms.size()); ++a)
@@ -55,13 +56,13 @@ std::string ArmPlan::Setting(const std::string& key) const {
 }
 
 std::vector<ArmPlan> ReadArmPlans(std::string_view plan_text) {
-  const WrittenPlan written = ReadPlanText(plan_text);
+  const sweep::WrittenPlan written = sweep::ReadPlanText(plan_text);
   std::set<std::string> warmups;
-  for (const WrittenPlan::Stage& stage : written.stages)
-    if (stage.kind == StageKind::kTrain) warmups.insert(stage.after.begin(), stage.after.end());
+  for (const sweep::WrittenPlan::Stage& stage : written.stages)
+    if (stage.kind == sweep::StageKind::kTrain) warmups.insert(stage.after.begin(), stage.after.end());
   std::vector<ArmPlan> plans;
-  for (const WrittenPlan::Stage& stage : written.stages)
-    for (const WrittenPlan::Arm& arm : stage.arms)
+  for (const sweep::WrittenPlan::Stage& stage : written.stages)
+    for (const sweep::WrittenPlan::Arm& arm : stage.arms)
       plans.push_back({.stage = stage.name,
                        .name = arm.name,
                        .warmup = warmups.contains(stage.name),
@@ -70,10 +71,11 @@ std::vector<ArmPlan> ReadArmPlans(std::string_view plan_text) {
   return plans;
 }
 
-std::vector<ShownMission> PickMissions(ResultReader& reader, std::span<const ArmPlan> plans) {
+std::vector<ShownMission> PickMissions(store::ResultReader& reader, std::span<const ArmPlan> plans) {
   std::vector<ShownMission> shown;
   std::optional<std::string> world;
-  for (const Outcome outcome : {Outcome::kSuccess, Outcome::kFalsePositive, Outcome::kBatteryDepleted})
+  for (const mission::Outcome outcome :
+       {mission::Outcome::kSuccess, mission::Outcome::kFalsePositive, mission::Outcome::kBatteryDepleted})
     for (const Candidate& candidate : Candidates(reader.Layout(), plans)) {
       if (world && candidate.plan->Setting("mission.world") != *world) continue;
       const auto id = MedianMission(reader, candidate.stage, candidate.arm, outcome);
@@ -86,13 +88,13 @@ std::vector<ShownMission> PickMissions(ResultReader& reader, std::span<const Arm
   return shown;
 }
 
-FoundScene FindScene(ResultReader& reader, const std::string& world) {
+FoundScene FindScene(store::ResultReader& reader, const std::string& world) {
   const auto& worlds = reader.StoredRecipe().inputs;
   const auto flown = worlds.find(world);
   if (flown == worlds.end()) return {nullptr, fmt::format("the recipe does not know the world '{}'", world)};
   try {
-    const RestoredFiles files(reader);
-    std::shared_ptr<const Scene> scene = Scene::Load(files.PathOf(world));
+    const store::RestoredFiles files(reader);
+    std::shared_ptr<const world::Scene> scene = world::Scene::Load(files.PathOf(world));
     if (scene->Fingerprint() != flown->second)
       return {nullptr, fmt::format("{} has changed since it was flown in", world)};
     return {scene, ""};
@@ -101,4 +103,4 @@ FoundScene FindScene(ResultReader& reader, const std::string& world) {
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::figures

@@ -15,14 +15,14 @@
 #include "engine/sweep/plan.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::figures {
 
 // One arm as the stored plan has it.
 struct ArmPlan {
   std::string stage, name;
-  bool warmup = false;                          // a training stage builds on its stage
-  std::map<std::string, std::string> settings;  // every parameter of its configuration, as text
-  std::optional<Precision> precision = {};      // of its stage
+  bool warmup = false;                             // a training stage builds on its stage
+  std::map<std::string, std::string> settings;     // every parameter of its configuration, as text
+  std::optional<sweep::Precision> precision = {};  // of its stage
 
   // "" where there is none of that key.
   std::string Setting(const std::string& key) const;
@@ -35,20 +35,20 @@ std::vector<ArmPlan> ReadArmPlans(std::string_view plan_text);
 struct ShownMission {
   std::string stage, arm;
   int number = 0;
-  MissionRecord record;
+  mission::MissionRecord record;
 };
 
 // Up to one mission per outcome (success, false positive, battery depleted), all of one world: from the first arm that
 // has any with stored timesteps, the one of the median duration. Arms are tried in this order: ed3r-75, other arms, warm-ups.
-std::vector<ShownMission> PickMissions(ResultReader& reader, std::span<const ArmPlan> plans);
+std::vector<ShownMission> PickMissions(store::ResultReader& reader, std::span<const ArmPlan> plans);
 
 struct FoundScene {
-  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const world::Scene> scene;
   std::string why_not;  // half a sentence, where there is none
 };
 
 // The world `world` (as the plan names it) of the run, from the files that the run keeps, if they make the scene that was
 // flown.
-FoundScene FindScene(ResultReader& reader, const std::string& world);
+FoundScene FindScene(store::ResultReader& reader, const std::string& world);
 
-}  // namespace ed3r
+}  // namespace ed3r::figures

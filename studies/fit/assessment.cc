@@ -10,7 +10,7 @@
 #include "engine/core/check.h"
 #include "studies/fit/uncertainty.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 constexpr int kMinHoverRowsOfFlight = 5;
@@ -209,4 +209,4 @@ HoverScaling FitHoverScaling(const FlightLog& log) {
   return scaling;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

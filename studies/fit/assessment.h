@@ -7,7 +7,7 @@
 #include "studies/fit/energy_model.h"
 #include "studies/fit/estimate.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 
 // Predicted power per flight and row.
 using Predictions = std::vector<std::vector<double>>;
@@ -77,4 +77,4 @@ struct HoverScaling {
 inline constexpr double kReferenceDensityKgm3 = 1.225;
 HoverScaling FitHoverScaling(const FlightLog& log);
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

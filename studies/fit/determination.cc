@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 constexpr double kInterval = 1.96;
@@ -151,4 +151,4 @@ Determination Determine(const EnergyModel& model, const std::vector<double>& def
   return result;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

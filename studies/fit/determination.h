@@ -13,7 +13,7 @@
 #include "studies/fit/energy_model.h"
 #include "studies/fit/uncertainty.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 
 // Median error of held-out energy above which a model says nothing about the log.
 inline constexpr double kMaxHeldOutErrorPct = 100.0;
@@ -34,4 +34,4 @@ Determination Determine(const EnergyModel& model, const std::vector<double>& def
                         const std::vector<Flight>& flights, const Estimate& estimate,
                         const Uncertainty& uncertainty, const Assessment& held_out);
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -6,17 +6,17 @@
 
 #include "engine/robot/power/power_models.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 // A power formula with everything but row and parameters bound.
 struct Airframe {
-  Rotorcraft craft;
+  robot::Rotorcraft craft;
   double gravity_mps2;
 
-  Air AirAt(const FlightRow& row) const { return {row.density_kgm3, gravity_mps2}; }
-  Rotorcraft Loaded(const FlightRow& row) const {
-    Rotorcraft loaded = craft;
+  robot::Air AirAt(const FlightRow& row) const { return {row.density_kgm3, gravity_mps2}; }
+  robot::Rotorcraft Loaded(const FlightRow& row) const {
+    robot::Rotorcraft loaded = craft;
     loaded.mass_kg = row.mass_kg;
     return loaded;
   }
@@ -29,11 +29,11 @@ struct PaperFormula {
 
   template <class T>
   static T PowerW(const Airframe& airframe, const FlightRow& row, const T* p) {
-    PaperParameters<T> parameters{.efficiency = p[0], .drag_horizontal = p[1]};
+    robot::PaperParameters<T> parameters{.efficiency = p[0], .drag_horizontal = p[1]};
     if constexpr (kSize == 3) parameters.drag_vertical = p[2];
-    const PaperPower<T> power =
-        PaperPowersW(parameters, airframe.Loaded(row), airframe.AirAt(row), row.airspeed_mps,
-                     std::abs(row.climb_mps), HoverForm::kPhysical, kForm);
+    const robot::PaperPower<T> power =
+        robot::PaperPowersW(parameters, airframe.Loaded(row), airframe.AirAt(row), row.airspeed_mps,
+                            std::abs(row.climb_mps), HoverForm::kPhysical, kForm);
     if (row.climb_mps > kVerticalMps) return power.ascent_w;
     if (row.climb_mps < -kVerticalMps) return power.descent_w;
     return power.horizontal_w;
@@ -46,13 +46,13 @@ struct MomentumFormula {
 
   template <class T>
   static T PowerW(const Airframe& airframe, const FlightRow& row, const T* p) {
-    const MomentumParameters<T> parameters{.efficiency = p[0],
-                                           .induced_factor = p[1],
-                                           .interference = kInterference ? p[kSize - 1] : T(0.0),
-                                           .profile_share = p[2],
-                                           .drag_area_m2 = p[3]};
-    return MomentumPowerW(parameters, row.mass_kg, row.airspeed_mps, row.climb_mps, airframe.AirAt(row),
-                          airframe.craft.DiscAreaM2());
+    const robot::MomentumParameters<T> parameters{.efficiency = p[0],
+                                                  .induced_factor = p[1],
+                                                  .interference = kInterference ? p[kSize - 1] : T(0.0),
+                                                  .profile_share = p[2],
+                                                  .drag_area_m2 = p[3]};
+    return robot::MomentumPowerW(parameters, row.mass_kg, row.airspeed_mps, row.climb_mps,
+                                 airframe.AirAt(row), airframe.craft.DiscAreaM2());
   }
 };
 
@@ -83,7 +83,7 @@ class FormulaModel final : public EnergyModel {
 }  // namespace
 
 std::vector<std::unique_ptr<EnergyModel>> MakeEnergyModels(const RobotConfig& robot, double gravity_mps2) {
-  const Airframe airframe{MakeRotorcraft(robot), gravity_mps2};
+  const Airframe airframe{robot::MakeRotorcraft(robot), gravity_mps2};
   // The drag coefficients' bounds are those of their configuration keys.
   const ParameterSpec paper_efficiency{"efficiency", "energy.paper_efficiency", "", 0.05, 1.0, 0.6};
   const ParameterSpec c_dh{"C_dh", "robot.drag_horizontal", "", 0.0, 5.0, 0.55};
@@ -112,4 +112,4 @@ std::vector<std::unique_ptr<EnergyModel>> MakeEnergyModels(const RobotConfig& ro
   return models;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -9,7 +9,7 @@
 #include "engine/config/robot.h"
 #include "studies/fit/flight_log.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 
 struct ParameterSpec {
   std::string name;
@@ -54,4 +54,4 @@ std::vector<std::unique_ptr<EnergyModel>> MakeEnergyModels(const RobotConfig& ro
 
 inline constexpr double kVerticalMps = 0.5;
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -9,7 +9,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 constexpr std::size_t kStartRows = 1500;  // several starts are compared on so many rows at most
@@ -309,4 +309,4 @@ double ScoreSlopeOf(Loss loss, double u) {
   return q < 1.0 ? (1.0 - q) * (1.0 - 5.0 * q) : 0.0;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

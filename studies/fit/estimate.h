@@ -15,7 +15,7 @@
 
 #include "studies/fit/energy_model.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 
 enum class Loss { kHuber, kTukey };
 
@@ -50,4 +50,4 @@ std::unique_ptr<ceres::CostFunction> RowResiduals(const EnergyModel& model, Rows
 double ScoreOf(Loss loss, double u);
 double ScoreSlopeOf(Loss loss, double u);
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -12,14 +12,15 @@
 #include "studies/fit/power_check.h"
 #include "studies/flight_logs/read_log.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
-std::vector<LogTable> ReadTables(const std::vector<std::string>& paths, const LogReading& reading) {
+std::vector<flight_logs::LogTable> ReadTables(const std::vector<std::string>& paths,
+                                              const flight_logs::LogReading& reading) {
   if (paths.empty()) throw UserError("ed3r fit: no log file given");
-  std::vector<LogTable> tables;
-  for (const std::string& path : paths) tables.push_back(ReadLog(path, reading));
-  for (const LogTable& table : tables)
+  std::vector<flight_logs::LogTable> tables;
+  for (const std::string& path : paths) tables.push_back(flight_logs::ReadLog(path, reading));
+  for (const flight_logs::LogTable& table : tables)
     if (table.kind() != tables.front().kind())
       throw UserError(fmt::format("{}: another kind of log than {}; fit logs of one kind at a time",
                                   table.path(), tables.front().path()));
@@ -27,15 +28,15 @@ std::vector<LogTable> ReadTables(const std::vector<std::string>& paths, const Lo
 }
 
 // The built-in format that a log has by its kind or, of CSV, by its columns.
-std::string FormatOf(const LogTable& table) {
+std::string FormatOf(const flight_logs::LogTable& table) {
   switch (table.kind()) {
-    case LogKind::kPx4:
+    case flight_logs::LogKind::kPx4:
       return "px4";
-    case LogKind::kArduPilot:
+    case flight_logs::LogKind::kArduPilot:
       return "ardupilot";
-    case LogKind::kAirData:
+    case flight_logs::LogKind::kAirData:
       return "dji";
-    case LogKind::kCsv:
+    case flight_logs::LogKind::kCsv:
       break;
   }
   for (const char* name : {"m100", "ardupilot"}) {
@@ -63,11 +64,12 @@ void CheckAirframe(const LogFormat& format, const std::string& path) {
       path, fmt::join(missing, ", "), missing.size() == 1 ? "is" : "are"));
 }
 
-LogFormat FormatWithSettings(const LogTable& table, const std::string& chosen, const FitOptions& options) {
+LogFormat FormatWithSettings(const flight_logs::LogTable& table, const std::string& chosen,
+                             const FitOptions& options) {
   const std::string name = chosen.empty() ? FormatOf(table) : chosen;
   LogFormat format = LoadLogFormat(name);
   // What a built-in format says of an airframe is that of its own data set, never that of a raw log.
-  if (table.kind() != LogKind::kCsv && IsBuiltInLogFormat(name)) {
+  if (table.kind() != flight_logs::LogKind::kCsv && IsBuiltInLogFormat(name)) {
     format.robot = {};
     format.robot_keys.clear();
     format.notes.clear();
@@ -90,7 +92,7 @@ LogFormat FormatWithSettings(const LogTable& table, const std::string& chosen, c
 
 FlightLog LoadLog(const std::vector<std::string>& paths, const std::string& format, const FitOptions& options,
                   LogUse use) {
-  const std::vector<LogTable> tables = ReadTables(paths, options.reading);
+  const std::vector<flight_logs::LogTable> tables = ReadTables(paths, options.reading);
   FlightLog log =
       MakeFlightLog(tables, FormatWithSettings(tables.front(), format, options), use, options.reading);
   CheckMeasuredPower(tables, log, options.gravity_mps2);
@@ -194,4 +196,4 @@ FitReport RunFit(const FitOptions& options) {
   return report;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -14,7 +14,7 @@
 #include "studies/fit/determination.h"
 #include "studies/fit/uncertainty.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 
 struct FitOptions {
   std::vector<std::string> logs = {};
@@ -25,7 +25,7 @@ struct FitOptions {
   // throw.
   std::vector<std::pair<std::string, std::string>> robot = {};
   double gravity_mps2 = 9.8;
-  LogReading reading = {};
+  flight_logs::LogReading reading = {};
 };
 
 struct ModelReport {
@@ -57,4 +57,4 @@ struct FitReport {
 // that was not measured, a log that no model explains.
 FitReport RunFit(const FitOptions& options);
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

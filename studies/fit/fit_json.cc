@@ -3,7 +3,7 @@
 #include "studies/fit/fit_text.h"
 #include "studies/metrics/number_text.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -25,7 +25,7 @@ Json LogJson(const FlightLog& log) {
           {"drop_outs", log.drop_outs},
           {"spikes", log.spikes},
           {"climb_from", log.format.climb_from == ClimbFrom::kAltitude ? "altitude" : "column"},
-          {"climb_drift_m", JsonNumber(log.climb_drift_m)},
+          {"climb_drift_m", metrics::JsonNumber(log.climb_drift_m)},
           {"bad_rows", log.bad_rows},
           {"notes", notes}};
 }
@@ -51,7 +51,7 @@ Json AssessmentJson(const Assessment& assessment) {
                        {"duration_s", flight.duration_s},
                        {"measured_j", flight.measured_j},
                        {"predicted_j", flight.predicted_j},
-                       {"error_pct", JsonNumber(flight.ErrorPct())}});
+                       {"error_pct", metrics::JsonNumber(flight.ErrorPct())}});
   for (const HoverPower& entry : assessment.hover)
     hover.push_back({{"mass_kg", entry.mass_kg},
                      {"rows", entry.rows},
@@ -59,7 +59,7 @@ Json AssessmentJson(const Assessment& assessment) {
                      {"measured_w", entry.measured_w},
                      {"predicted_w", entry.predicted_w},
                      {"still_air_w", entry.still_air_w > 0.0 ? Json(entry.still_air_w) : Json(nullptr)},
-                     {"error_pct", JsonNumber(entry.ErrorPct())}});
+                     {"error_pct", metrics::JsonNumber(entry.ErrorPct())}});
   return {{"median_flight_energy_error_pct", assessment.median_error_pct},
           {"p90_flight_energy_error_pct", assessment.p90_error_pct},
           {"max_flight_energy_error_pct", assessment.max_error_pct},
@@ -134,11 +134,11 @@ Json ToJson(const FitReport& report) {
                {"models", models},
                {"log", LogJson(report.log)}};
   if (report.evaluate_log) json["evaluate_log"] = LogJson(*report.evaluate_log);
-  json["hover_scaling"] = {{"exponent", JsonNumber(report.scaling.exponent)},
+  json["hover_scaling"] = {{"exponent", metrics::JsonNumber(report.scaling.exponent)},
                            {"ci95", Pair({0.0, report.scaling.low, report.scaling.high})},
                            {"reference_density_kgm3", kReferenceDensityKgm3},
                            {"points", points}};
   return json;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

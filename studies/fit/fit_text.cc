@@ -12,7 +12,7 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 const char* UnitsOf(const FitReport& report) { return report.segments ? "segments" : "flights"; }
@@ -277,4 +277,4 @@ void WriteFitOutputs(const FitReport& report, const std::string& directory) {
   WriteFile(path / "rows.csv", RowsCsv(report));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -7,7 +7,7 @@
 
 #include "studies/fit/fit.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 
 // Tables: log, models with their error on held-out flights, parameters with intervals, hover power by mass.
 void PrintReport(const FitReport& report, std::ostream& out);
@@ -26,4 +26,4 @@ std::string FittedYaml(const FitReport& report);
 // rows.csv. Throws UserError where a file cannot be written.
 void WriteFitOutputs(const FitReport& report, const std::string& directory);
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

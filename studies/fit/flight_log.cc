@@ -14,7 +14,7 @@
 #include "engine/core/utf8.h"
 #include "studies/fit/unit_check.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 constexpr double kDropOutShare = 0.25;
@@ -28,7 +28,7 @@ struct Range {
 // Reads one meaning of the format from a table, with its unit factor; absent meanings read as a constant.
 class Source {
  public:
-  Source(const LogTable& table, const LogFormat& format, const std::string& meaning, Range range,
+  Source(const flight_logs::LogTable& table, const LogFormat& format, const std::string& meaning, Range range,
          double otherwise = 0.0)
       : table_(table), range_(range), otherwise_(otherwise) {
     if (!format.Has(meaning)) return;
@@ -48,7 +48,7 @@ class Source {
   }
 
  private:
-  const LogTable& table_;
+  const flight_logs::LogTable& table_;
   Range range_;
   double otherwise_;
   double factor_ = 1.0;
@@ -72,7 +72,8 @@ struct RawFlight {
 // All flights of one table, rows on the ground included.
 class TableReader {
  public:
-  TableReader(const LogTable& table, const LogFormat& format, const LogReading& reading)
+  TableReader(const flight_logs::LogTable& table, const LogFormat& format,
+              const flight_logs::LogReading& reading)
       : table_(table),
         format_(format),
         reading_(reading),
@@ -166,9 +167,9 @@ class TableReader {
     flight.in_flight.push_back(in_flight);
   }
 
-  const LogTable& table_;
+  const flight_logs::LogTable& table_;
   const LogFormat& format_;
-  const LogReading& reading_;
+  const flight_logs::LogReading& reading_;
   Source time_, power_, voltage_, current_, airspeed_, climb_, altitude_, density_, payload_, mass_;
   std::vector<Gate> gates_;
   std::size_t flight_column_ = 0;
@@ -202,7 +203,7 @@ std::vector<double> AltitudeSlope(double window_s, const RawFlight& flight) {
 }
 
 // Refuses a recorded climb rate that has not the sign or the size of what the altitude does.
-void CheckClimb(const RawFlight& flight, const LogTable& table, const LogFormat& format) {
+void CheckClimb(const RawFlight& flight, const flight_logs::LogTable& table, const LogFormat& format) {
   const std::vector<double> slopes = AltitudeSlope(format.climb_window_s, flight);
   std::vector<double> recorded_mps, slope_mps;
   for (std::size_t i = 0; i < slopes.size(); ++i) {
@@ -251,7 +252,7 @@ double DurationS(const FlightLog& log) {
 }
 
 // Puts a flight's rows in the air into the log; returns how far its recorded climb rate drifts from its altitude.
-double AddFlight(const LogTable& source, std::size_t table, RawFlight& raw, FlightLog& log) {
+double AddFlight(const flight_logs::LogTable& source, std::size_t table, RawFlight& raw, FlightLog& log) {
   if (log.format.climb_from == ClimbFrom::kAltitude) {
     const std::vector<double> slopes = AltitudeSlope(log.format.climb_window_s, raw);
     for (std::size_t i = 0; i < slopes.size(); ++i) raw.rows[i].climb_mps = slopes[i];
@@ -277,7 +278,7 @@ double AddFlight(const LogTable& source, std::size_t table, RawFlight& raw, Flig
 }
 
 // Refuses logs in which more than kMaxNoPowerShare of the rows in flight draw no power: there it was not measured.
-void CheckPowerInFlight(const std::vector<LogTable>& tables, const FlightLog& log) {
+void CheckPowerInFlight(const std::vector<flight_logs::LogTable>& tables, const FlightLog& log) {
   int without = 0;
   const FlightRow* first = nullptr;
   std::size_t table = 0;
@@ -313,7 +314,7 @@ void CheckPowerInFlight(const std::vector<LogTable>& tables, const FlightLog& lo
 }
 
 // No row in the air: says what in_flight asks for and what the first row has instead.
-[[noreturn]] void FailOnGround(const LogTable& table, const FlightLog& log) {
+[[noreturn]] void FailOnGround(const flight_logs::LogTable& table, const FlightLog& log) {
   std::string conditions;
   for (const auto& [name, condition] : log.format.in_flight)
     conditions +=
@@ -336,8 +337,8 @@ void NoteDeadSpeed(FlightLog& log) {
       fmt::format("the speed is {:g} m/s in all {} rows in flight: was it measured?", first_mps, log.rows));
 }
 
-void CheckEnough(const std::vector<LogTable>& tables, const FlightLog& log, LogUse use) {
-  const LogTable& last = tables.back();
+void CheckEnough(const std::vector<flight_logs::LogTable>& tables, const FlightLog& log, LogUse use) {
+  const flight_logs::LogTable& last = tables.back();
   const std::string where = last.rows() == 0 ? last.path() + ":1:1: " : last.WhereRow(last.rows() - 1);
   if (log.flights.empty() && log.rows_on_ground > 0 && !log.format.in_flight.empty()) FailOnGround(last, log);
   if (log.flights.empty())
@@ -369,8 +370,8 @@ bool IsHover(const FlightRow& row, const LogFormat& format) {
          std::abs(row.climb_mps) <= format.hover_max_climb_mps;
 }
 
-FlightLog MakeFlightLog(const std::vector<LogTable>& tables, const LogFormat& format, LogUse use,
-                        const LogReading& reading) {
+FlightLog MakeFlightLog(const std::vector<flight_logs::LogTable>& tables, const LogFormat& format, LogUse use,
+                        const flight_logs::LogReading& reading) {
   ED3R_CHECK(!tables.empty(), "no tables");
   FlightLog log;
   log.format = format;
@@ -392,4 +393,4 @@ FlightLog MakeFlightLog(const std::vector<LogTable>& tables, const LogFormat& fo
   return log;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -7,7 +7,7 @@
 #include "studies/fit/log_format.h"
 #include "studies/flight_logs/log_table.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 
 // Why a row does not count for energies: single samples that no multirotor in flight can draw.
 enum class RowQuality : unsigned char { kGood, kDropOut, kSpike };
@@ -63,12 +63,12 @@ enum class LogUse { kFit, kEvaluate };
 // Logs as one. Throws UserError naming file, line and column: a column that is missing, text in a number, values out of
 // range, time that does not increase (with skip_bad such rows are left out and counted), units that cannot be
 // (unit_check.h), flights that are not contiguous, power that was not measured, too few rows, no hovering.
-FlightLog MakeFlightLog(const std::vector<LogTable>& tables, const LogFormat& format,
-                        LogUse use = LogUse::kFit, const LogReading& reading = {});
+FlightLog MakeFlightLog(const std::vector<flight_logs::LogTable>& tables, const LogFormat& format,
+                        LogUse use = LogUse::kFit, const flight_logs::LogReading& reading = {});
 
 bool IsHover(const FlightRow& row, const LogFormat& format);
 
 // Seconds between neighbouring rows above which nothing is integrated.
 inline constexpr double kMaxGapS = 2.0;
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

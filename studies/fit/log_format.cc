@@ -13,7 +13,7 @@
 #include "engine/core/suggest.h"
 #include "engine/core/yaml_reader.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 struct BuiltIn {
@@ -267,4 +267,4 @@ bool IsBuiltInLogFormat(const std::string& name) {
                      [&](const BuiltIn& format) { return name == format.name; });
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -28,7 +28,7 @@
 
 #include "engine/config/robot.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 
 enum class ClimbFrom { kColumn, kAltitude };
 
@@ -63,4 +63,4 @@ LogFormat ParseLogFormat(const std::string& name, const std::string& yaml);
 std::vector<std::string> BuiltInLogFormats();
 bool IsBuiltInLogFormat(const std::string& name);
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -8,7 +8,7 @@
 #include "engine/core/check.h"
 #include "engine/robot/power/power_models.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 double MedianOf(std::vector<double> values) {
@@ -18,7 +18,7 @@ double MedianOf(std::vector<double> values) {
 }
 
 // Nine rows in ten alike to a thousandth is no measurement: a flying multirotor's power moves by percents.
-void CheckVaries(const std::vector<LogTable>& tables, const FlightLog& log) {
+void CheckVaries(const std::vector<flight_logs::LogTable>& tables, const FlightLog& log) {
   constexpr double kLeastSpread = 1e-3, kShare = 0.9;
   std::vector<double> powers;
   for (const Flight& flight : log.flights)
@@ -42,9 +42,10 @@ struct Guess {
 
 }  // namespace
 
-void CheckMeasuredPower(const std::vector<LogTable>& tables, const FlightLog& log, double gravity_mps2) {
+void CheckMeasuredPower(const std::vector<flight_logs::LogTable>& tables, const FlightLog& log,
+                        double gravity_mps2) {
   CheckVaries(tables, log);
-  const double area_m2 = MakeRotorcraft(log.format.robot).DiscAreaM2();
+  const double area_m2 = robot::MakeRotorcraft(log.format.robot).DiscAreaM2();
   std::vector<double> ratios, powers;
   double mass_kg = 0.0;
   for (const Flight& flight : log.flights)
@@ -79,4 +80,4 @@ void CheckMeasuredPower(const std::vector<LogTable>& tables, const FlightLog& lo
       mass_kg, log.format.robot.propellers, log.format.robot.propeller_radius_m, mend));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

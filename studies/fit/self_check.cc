@@ -10,7 +10,7 @@
 #include "engine/core/suggest.h"
 #include "studies/fit/uncertainty.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 struct Plausible {
@@ -132,4 +132,4 @@ nlohmann::ordered_json ToJson(const SelfCheckReport& report) {
           {"parameters", parameters}};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -11,7 +11,7 @@
 
 #include "studies/fit/synthetic.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 
 struct SelfCheckOptions {
   std::string model = "momentum";
@@ -49,4 +49,4 @@ SelfCheckReport RunSelfCheck(const SelfCheckOptions& options);
 void PrintSelfCheck(const SelfCheckReport& report, std::ostream& out);
 nlohmann::ordered_json ToJson(const SelfCheckReport& report);
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -6,7 +6,7 @@
 
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 constexpr int kPhaseRows = 20;
@@ -85,4 +85,4 @@ FlightLog MakeSyntheticLog(const EnergyModel& model, const std::vector<double>& 
   return log;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -6,7 +6,7 @@
 
 #include "studies/fit/energy_model.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 
 struct SyntheticOptions {
   int flights = 60;
@@ -29,4 +29,4 @@ FlightLog MakeSyntheticLog(const EnergyModel& model, const std::vector<double>& 
                            const LogFormat& format, const SyntheticOptions& options, std::uint64_t seed,
                            std::uint32_t index);
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -11,7 +11,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -152,4 +152,4 @@ double StudentT95(int degrees_of_freedom) {
          (79.0 * z9 + 776.0 * z7 + 1482.0 * z5 - 1920.0 * z3 - 945.0 * z) / (92160.0 * n * n * n * n);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

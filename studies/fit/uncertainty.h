@@ -18,7 +18,7 @@
 
 #include "studies/fit/estimate.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 
 struct Interval {
   double standard_error, low, high;  // NaN where there is none
@@ -37,4 +37,4 @@ Uncertainty EstimateUncertainty(const EnergyModel& model, const std::vector<Flig
 // Two-sided 95 % quantile of Student's t (relative error below 1e-3 from 3 degrees of freedom on).
 double StudentT95(int degrees_of_freedom);
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -11,7 +11,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 struct UnitWord {
@@ -84,7 +84,7 @@ double Quantile(std::vector<double> values, double share) {
 
 class UnitCheck {
  public:
-  UnitCheck(const LogTable& table, const LogFormat& format) : table_(table), format_(format) {}
+  UnitCheck(const flight_logs::LogTable& table, const LogFormat& format) : table_(table), format_(format) {}
 
   void Run() const {
     for (const auto& [meaning, column] : format_.columns) CheckName(meaning, column);
@@ -138,7 +138,7 @@ class UnitCheck {
   [[noreturn]] void Refuse(const std::string& meaning, const std::string& what,
                            const std::string& mend) const {
     const std::string& column = format_.columns.at(meaning);
-    const std::string head = table_.kind() == LogKind::kCsv ? ":1:1" : "";
+    const std::string head = table_.kind() == flight_logs::LogKind::kCsv ? ":1:1" : "";
     throw UserError(fmt::format("{}{}: {} ('{}'): {}; {}", table_.path(), head, meaning, column, what, mend));
   }
 
@@ -285,7 +285,7 @@ class UnitCheck {
                Mend("ground_speed_mps", {guess}));
   }
 
-  const LogTable& table_;
+  const flight_logs::LogTable& table_;
   const LogFormat& format_;
 };
 
@@ -303,7 +303,9 @@ void CheckClimbMoves(const std::string& column, const LogFormat& format, double 
 
 }  // namespace
 
-void CheckUnits(const LogTable& table, const LogFormat& format) { UnitCheck(table, format).Run(); }
+void CheckUnits(const flight_logs::LogTable& table, const LogFormat& format) {
+  UnitCheck(table, format).Run();
+}
 
 void CheckClimbAgainstAltitude(const std::string& where, const LogFormat& format,
                                const std::vector<double>& recorded_mps,
@@ -358,4 +360,4 @@ void CheckClimbAgainstAltitude(const std::string& where, const LogFormat& format
                     column, format.columns.at("altitude_m"), ratio));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

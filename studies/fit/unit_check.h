@@ -11,14 +11,14 @@
 #include "studies/fit/log_format.h"
 #include "studies/flight_logs/log_table.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 
 // By the columns' names (speed_kmh, time(ms)), the median step of the time, the size of speeds, loads, voltages and
 // currents, and the speed against the path of latitude and longitude columns where there are any.
-void CheckUnits(const LogTable& table, const LogFormat& format);
+void CheckUnits(const flight_logs::LogTable& table, const LogFormat& format);
 
 // Recorded climb rates of one flight and the slopes of its altitude at the same rows: `where` begins the message.
 void CheckClimbAgainstAltitude(const std::string& where, const LogFormat& format,
                                const std::vector<double>& recorded_mps, const std::vector<double>& slope_mps);
 
-}  // namespace ed3r
+}  // namespace ed3r::fit

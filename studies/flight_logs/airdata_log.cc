@@ -12,7 +12,7 @@
 #include "engine/core/check.h"
 #include "studies/flight_logs/battery.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 constexpr double kGroundHeightM = 0.5;
@@ -140,4 +140,4 @@ DecodedLog ReadAirDataLog(const CsvTable& table, const LogReading& reading, int 
   return AirDataReader(table, reading, bad).Read();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

@@ -13,7 +13,7 @@
 #include "engine/core/csv_table.h"
 #include "studies/flight_logs/log_table.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 bool IsAirDataLog(const CsvTable& table);
 
@@ -21,4 +21,4 @@ bool IsAirDataLog(const CsvTable& table);
 // counted), no current, no flight. `bad`: rows that were left out before.
 DecodedLog ReadAirDataLog(const CsvTable& table, const LogReading& reading, int bad);
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

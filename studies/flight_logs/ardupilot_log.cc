@@ -10,7 +10,7 @@
 #include "studies/flight_logs/dataflash.h"
 #include "studies/flight_logs/joined_rows.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 const std::set<std::string> kWanted = {"BAT",  "BAT2", "CURR", "CUR2", "GPS", "CTUN",
@@ -152,4 +152,4 @@ DecodedLog ReadArduPilotLog(const std::string& path, std::string_view bytes, con
   return ArduPilotReader(path, bytes, reading).Read();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

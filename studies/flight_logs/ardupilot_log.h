@@ -15,9 +15,9 @@
 
 #include "studies/flight_logs/log_table.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 // Throws UserError: what DataFlashLog refuses; no power, speed or altitude in the log; a choice of batteries to make.
 DecodedLog ReadArduPilotLog(const std::string& path, std::string_view bytes, const LogReading& reading);
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

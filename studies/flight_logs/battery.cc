@@ -8,7 +8,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 double MaxOf(const TimeSeries& series) {
@@ -99,4 +99,4 @@ ChosenBattery ChooseBattery(const std::string& path, const std::vector<Battery>&
       fmt::format("{}: --battery {}: there is none; batteries: {}", path, *reading.battery, Described(all)));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

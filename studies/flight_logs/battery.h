@@ -7,7 +7,7 @@
 #include "studies/flight_logs/log_table.h"
 #include "studies/flight_logs/time_series.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 struct Battery {
   int id = 0;
@@ -29,4 +29,4 @@ ChosenBattery ChooseBattery(const std::string& path, const std::vector<Battery>&
 // Refuses a log in which no battery measured a current. Apart, because that is the first thing to say of a log.
 void CheckPowerMeasured(const std::string& path, const std::vector<Battery>& batteries);
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

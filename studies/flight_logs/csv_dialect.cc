@@ -12,7 +12,7 @@
 #include "engine/core/check.h"
 #include "engine/core/message.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 // Cells of a line, quotes respected.
@@ -161,4 +161,4 @@ std::string StandardCsv(const std::string& path, std::string text, bool skip_bad
   return text;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

@@ -7,10 +7,10 @@
 
 #include <string>
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 // Throws UserError: no header line, columns that nothing separates, decimal commas between commas. With skip_bad, rows
 // with another number of cells than the header become comments and are counted in `bad`.
 std::string StandardCsv(const std::string& path, std::string text, bool skip_bad, int& bad);
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

@@ -10,7 +10,7 @@
 #include "engine/core/message.h"
 #include "studies/flight_logs/little_endian.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 constexpr std::string_view kHead = "\xA3\x95";
@@ -192,4 +192,4 @@ void DataFlashLog::Fail(std::size_t at, const std::string& what) const {
   throw UserError(OneLine(fmt::format("{}: byte {}: {}; --skip-bad reads what is whole", path_, at, what)));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

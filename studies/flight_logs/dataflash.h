@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 class DataFlashLog {
  public:
@@ -61,4 +61,4 @@ class DataFlashLog {
   int bad_ = 0;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

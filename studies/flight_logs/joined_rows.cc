@@ -7,7 +7,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 // Before the first message the state is the one that it ended: what becomes armed was not.
@@ -100,4 +100,4 @@ void CheckFlown(const DecodedLog& log) {
         "{}: no moment in flight at which battery, velocity and altitude are all known", log.path));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

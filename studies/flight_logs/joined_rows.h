@@ -9,7 +9,7 @@
 #include "studies/flight_logs/log_table.h"
 #include "studies/flight_logs/time_series.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 struct NamedSeries {
   std::string name;
@@ -35,4 +35,4 @@ ChosenBattery BatteryInFlight(const std::string& path, const std::map<int, Batte
 // Refuses rows of which none is in the air.
 void CheckFlown(const DecodedLog& log);
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

@@ -10,7 +10,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 static_assert(std::endian::native == std::endian::little);
 
@@ -56,4 +56,4 @@ inline std::optional<double> LoadNumber(char code, std::string_view bytes, std::
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

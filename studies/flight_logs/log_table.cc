@@ -10,7 +10,7 @@
 #include "engine/core/message.h"
 #include "engine/core/suggest.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 LogTable::LogTable(DecodedLog log) : log_(std::move(log)) {
   ED3R_CHECK(!log_.columns.empty(), log_.path + ": no columns");
@@ -66,4 +66,4 @@ std::string LogTable::WhereRow(std::size_t row) const {
   return fmt::format("{}: at {:.3f} s: ", path(), log_.columns.front().values[row]);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

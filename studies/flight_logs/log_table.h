@@ -12,7 +12,7 @@
 
 #include "engine/core/csv_table.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 enum class LogKind { kCsv, kPx4, kArduPilot, kAirData };
 
@@ -76,4 +76,4 @@ class LogTable {
   std::vector<std::string> names_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

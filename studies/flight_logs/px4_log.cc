@@ -10,7 +10,7 @@
 #include "studies/flight_logs/joined_rows.h"
 #include "studies/flight_logs/ulog.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 const std::set<std::string> kWanted = {"battery_status", "vehicle_local_position", "vehicle_air_data",
@@ -95,4 +95,4 @@ DecodedLog ReadPx4Log(const std::string& path, std::string_view bytes, const Log
   return Px4Reader(path, bytes, reading).Read();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

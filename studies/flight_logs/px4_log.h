@@ -14,9 +14,9 @@
 
 #include "studies/flight_logs/log_table.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 // Throws UserError: what ULog refuses; no power, no velocity, no flight in the log; a choice of batteries to make.
 DecodedLog ReadPx4Log(const std::string& path, std::string_view bytes, const LogReading& reading);
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

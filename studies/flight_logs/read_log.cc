@@ -11,7 +11,7 @@
 #include "studies/flight_logs/px4_log.h"
 #include "studies/flight_logs/ulog.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 namespace {
 
@@ -45,4 +45,4 @@ LogTable ParseLog(const std::string& path, std::string bytes, const LogReading& 
   return LogTable(std::move(table), bad);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

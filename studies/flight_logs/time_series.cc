@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 constexpr double kStampS = 1e-6;  // stamps are whole microseconds; closer is the same
@@ -41,4 +41,4 @@ double TimeSeries::Last(double time_s, double before_first) const {
                                    : values_[static_cast<std::size_t>(after - times_s_.begin()) - 1];
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

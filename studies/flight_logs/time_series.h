@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 inline constexpr double kMaxJoinS = 1.0;
 
@@ -36,4 +36,4 @@ class TimeSeries {
   double back_s_ = 0.0, back_from_s_ = 0.0;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

@@ -10,7 +10,7 @@
 #include "engine/core/message.h"
 #include "studies/flight_logs/little_endian.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 constexpr std::string_view kMagic = "ULog\x01\x12\x35";
@@ -210,4 +210,4 @@ void ULog::Fail(std::size_t at, const std::string& what) const {
       OneLine(fmt::format("{}: byte {}: {}; --skip-bad reads what stands before", path_, at, what)));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

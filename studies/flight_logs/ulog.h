@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 class ULog {
  public:
@@ -75,4 +75,4 @@ class ULog {
   int bad_ = 0, dropouts_ = 0;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

@@ -6,12 +6,12 @@
 #include "engine/core/check.h"
 #include "studies/paper/arms.h"
 
-namespace ed3r {
+namespace ed3r::metrics {
 
 KnownUnseen Split(const ArmData& arm, SplitBy by) {
   KnownUnseen split;
   for (ArmData* part : {&split.known, &split.unseen}) part->stage = arm.stage, part->name = arm.name;
-  for (const MissionRecord& mission : arm.missions) {
+  for (const mission::MissionRecord& mission : arm.missions) {
     const bool known = (by == SplitBy::kSite ? mission.site_known : mission.base_station_known) != 0;
     (known ? split.known : split.unseen).missions.push_back(mission);
   }
@@ -34,8 +34,8 @@ ArmData LongestShare(const ArmData& arm, int percent) {
 
 ArmData P85Group(const ArmData& arm) {
   ArmData group = LongestShare(arm, kP85Percent);
-  group.name = P85Name(arm.name);
+  group.name = paper::P85Name(arm.name);
   return group;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::metrics

@@ -7,13 +7,13 @@
 
 #include "engine/mission/record.h"
 
-namespace ed3r {
+namespace ed3r::metrics {
 
 struct ArmData {
   std::string stage, name;
-  std::vector<MissionRecord> missions;  // in mission order; without their timesteps
-  int failed = 0;                       // threw inside the program; nothing of them counts
-  int missing = 0;                      // planned, not flown yet
+  std::vector<mission::MissionRecord> missions;  // in mission order; without their timesteps
+  int failed = 0;                                // threw inside the program; nothing of them counts
+  int missing = 0;                               // planned, not flown yet
 };
 
 // What the warm-up had seen of a mission's place (the networks learnt on 6 of 14 sites and 1 of 2 stations).
@@ -44,4 +44,4 @@ constexpr std::size_t SizeOfP85(std::size_t missions) { return SizeOfShare(missi
 // (paper/arms.h).
 ArmData P85Group(const ArmData& arm);
 
-}  // namespace ed3r
+}  // namespace ed3r::metrics

@@ -9,10 +9,10 @@
 #include "engine/core/check.h"
 #include "engine/core/suggest.h"
 
-namespace ed3r {
+namespace ed3r::metrics {
 namespace {
 
-using M = MissionRecord;
+using M = mission::MissionRecord;
 using G = MetricGroup;
 using E = Estimate;
 
@@ -23,7 +23,7 @@ double One(const M&) { return 1; }
 double Timesteps(const M& m) { return static_cast<double>(m.timesteps); }
 double Energy(const M& m) { return m.total_j; }
 double Duration(const M& m) { return m.duration_s; }
-bool Ended(const M& m, Outcome how) { return m.outcome == static_cast<std::int64_t>(how); }
+bool Ended(const M& m, mission::Outcome how) { return m.outcome == static_cast<std::int64_t>(how); }
 
 // Movement energy includes hovering while the robot senses, computes and transmits (R5). The Full model runs
 // at the remote controller when a timestep is offloaded (A44). A mission fails by battery depletion or by
@@ -42,13 +42,13 @@ constexpr MetricDefinition kMetrics[] = {
      [](const M& m) { return m.reliable_scs_sum; },
      [](const M& m) { return static_cast<double>(m.reliable_timesteps); }},
     {"msr_pct", G::kOutcome, "success (MSR)", "%", 2, E::kRate, kPercent,
-     [](const M& m) { return Ended(m, Outcome::kSuccess) ? 1.0 : 0.0; }, One},
+     [](const M& m) { return Ended(m, mission::Outcome::kSuccess) ? 1.0 : 0.0; }, One},
     {"wer_pct", G::kOutcome, "wasted energy (WER)", "%", 2, E::kShareOfEnergy, kPercent,
-     [](const M& m) { return Ended(m, Outcome::kSuccess) ? 0.0 : m.total_j; }, Energy},
+     [](const M& m) { return Ended(m, mission::Outcome::kSuccess) ? 0.0 : m.total_j; }, Energy},
     {"fp_pct", G::kOutcome, "false positive (FP)", "%", 2, E::kRate, kPercent,
-     [](const M& m) { return Ended(m, Outcome::kFalsePositive) ? 1.0 : 0.0; }, One},
+     [](const M& m) { return Ended(m, mission::Outcome::kFalsePositive) ? 1.0 : 0.0; }, One},
     {"bd_pct", G::kOutcome, "battery depleted (BD)", "%", 2, E::kRate, kPercent,
-     [](const M& m) { return Ended(m, Outcome::kBatteryDepleted) ? 1.0 : 0.0; }, One},
+     [](const M& m) { return Ended(m, mission::Outcome::kBatteryDepleted) ? 1.0 : 0.0; }, One},
     {"or_pct", G::kDecisions, "offloaded (OR)", "%", 2, E::kShareOfTimesteps, kPercent,
      [](const M& m) { return static_cast<double>(m.offloads); }, Timesteps},
     {"model_full_pct", G::kDecisions, "Full model", "%", 2, E::kShareOfTimesteps, kPercent,
@@ -106,4 +106,4 @@ std::string_view GroupTitle(MetricGroup group) {
   return "";
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::metrics

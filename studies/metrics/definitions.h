@@ -12,7 +12,7 @@
 
 #include "engine/mission/record.h"
 
-namespace ed3r {
+namespace ed3r::metrics {
 
 enum class MetricGroup { kEnergy, kDetection, kOutcome, kDecisions, kTime };
 
@@ -35,8 +35,8 @@ struct MetricDefinition {
   int decimals;                  // in tables
   Estimate estimate;
   double scale;  // from the record's unit to `unit`
-  double (*part)(const MissionRecord&);
-  double (*whole)(const MissionRecord&);
+  double (*part)(const mission::MissionRecord&);
+  double (*whole)(const mission::MissionRecord&);
 };
 
 // In the order of the tables. Lives as long as the program.
@@ -50,4 +50,4 @@ std::size_t MetricIndex(std::string_view name);
 
 std::string_view GroupTitle(MetricGroup group);
 
-}  // namespace ed3r
+}  // namespace ed3r::metrics

@@ -11,12 +11,12 @@
 #include "engine/core/check.h"
 #include "studies/statistics/intervals.h"
 
-namespace ed3r {
+namespace ed3r::metrics {
 namespace {
 
-void CheckRecord(const ArmData& arm, const MissionRecord& m) {
+void CheckRecord(const ArmData& arm, const mission::MissionRecord& m) {
   const auto here = [&] { return fmt::format("arm {}, scenario {}", arm.name, m.scenario); };
-  ED3R_CHECK(NameOf(static_cast<Outcome>(m.outcome)) != "?", here());
+  ED3R_CHECK(NameOf(static_cast<mission::Outcome>(m.outcome)) != "?", here());
   ED3R_CHECK(m.offloads >= 0 && m.full_local >= 0 && m.quantized_local >= 0, here());
   ED3R_CHECK(m.offloads + m.full_local + m.quantized_local == m.timesteps, here());
   for (const std::int64_t count : {m.reliable_timesteps, m.random_motions, m.predicted_timesteps})
@@ -30,7 +30,7 @@ void CheckRecord(const ArmData& arm, const MissionRecord& m) {
 }
 
 // Of the RC network's predictions in one mission that has any.
-double MeanErrorOf(const MissionRecord& m) {
+double MeanErrorOf(const mission::MissionRecord& m) {
   return m.absolute_reward_error_sum / static_cast<double>(m.predicted_timesteps);
 }
 
@@ -39,9 +39,9 @@ struct Contributions {
   std::vector<double> part, whole;
 };
 
-Contributions Collect(const MetricDefinition& metric, const std::vector<MissionRecord>& missions) {
+Contributions Collect(const MetricDefinition& metric, const std::vector<mission::MissionRecord>& missions) {
   Contributions all;
-  for (const MissionRecord& mission : missions) {
+  for (const mission::MissionRecord& mission : missions) {
     const double whole = metric.whole(mission);
     if (whole == 0) continue;
     all.part.push_back(metric.part(mission));
@@ -52,21 +52,22 @@ Contributions Collect(const MetricDefinition& metric, const std::vector<MissionR
 
 double Sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-Interval IntervalOf(Estimate estimate, const Contributions& all) {
+statistics::Interval IntervalOf(Estimate estimate, const Contributions& all) {
   switch (estimate) {
     case Estimate::kMean:
     case Estimate::kLookForward:
-      return MeanInterval(all.part);
+      return statistics::MeanInterval(all.part);
     case Estimate::kRate:
-      return RateInterval(std::llround(Sum(all.part)), static_cast<std::int64_t>(all.part.size()));
+      return statistics::RateInterval(std::llround(Sum(all.part)),
+                                      static_cast<std::int64_t>(all.part.size()));
     case Estimate::kShareOfTimesteps:
-      return ShareInterval(all.part, all.whole, ShareUnit::kTimestep);
+      return statistics::ShareInterval(all.part, all.whole, statistics::ShareUnit::kTimestep);
     case Estimate::kShareOfEnergy:
-      return ShareInterval(all.part, all.whole, ShareUnit::kMission);
+      return statistics::ShareInterval(all.part, all.whole, statistics::ShareUnit::kMission);
     case Estimate::kRatio:
-      return RatioInterval(all.part, all.whole);
+      return statistics::RatioInterval(all.part, all.whole);
     case Estimate::kPercentile85:
-      return QuantileInterval(all.part, 85);
+      return statistics::QuantileInterval(all.part, 85);
     case Estimate::kMaximum:
       return {};
   }
@@ -76,7 +77,7 @@ Interval IntervalOf(Estimate estimate, const Contributions& all) {
 double ValueOf(Estimate estimate, const Contributions& all) {
   if (estimate == Estimate::kMaximum) return all.part.back();
   if (estimate == Estimate::kPercentile85)
-    return all.part[QuantileRank(static_cast<std::int64_t>(all.part.size()), 85) - 1];
+    return all.part[statistics::QuantileRank(static_cast<std::int64_t>(all.part.size()), 85) - 1];
   return Sum(all.part) / Sum(all.whole);
 }
 
@@ -85,7 +86,7 @@ double UpperLimit(const MetricDefinition& metric) {
   return metric.unit == "%" ? 1.0 : std::numeric_limits<double>::infinity();
 }
 
-MetricValue Evaluate(const MetricDefinition& metric, const std::vector<MissionRecord>& missions,
+MetricValue Evaluate(const MetricDefinition& metric, const std::vector<mission::MissionRecord>& missions,
                      const WorstErrors& worst) {
   Contributions all = Collect(metric, missions);
   MetricValue result;
@@ -99,7 +100,7 @@ MetricValue Evaluate(const MetricDefinition& metric, const std::vector<MissionRe
   if (metric.estimate == Estimate::kPercentile85 || metric.estimate == Estimate::kMaximum)
     std::sort(all.part.begin(), all.part.end());
   result.value = metric.scale * ValueOf(metric.estimate, all);
-  if (const Interval interval = IntervalOf(metric.estimate, all); interval.Exists()) {
+  if (const statistics::Interval interval = IntervalOf(metric.estimate, all); interval.Exists()) {
     // A small sample's t interval may leave what is possible.
     result.lo = metric.scale * std::max(0.0, interval.lo);
     result.hi = metric.scale * std::min(UpperLimit(metric), interval.hi);
@@ -108,10 +109,11 @@ MetricValue Evaluate(const MetricDefinition& metric, const std::vector<MissionRe
 }
 
 // Missions by the network that flew them; one group where none did.
-std::vector<std::vector<MissionRecord>> ByNetwork(const std::vector<MissionRecord>& missions) {
-  std::map<std::int64_t, std::vector<MissionRecord>> groups;
-  for (const MissionRecord& mission : missions) groups[mission.network].push_back(mission);
-  std::vector<std::vector<MissionRecord>> list;
+std::vector<std::vector<mission::MissionRecord>> ByNetwork(
+    const std::vector<mission::MissionRecord>& missions) {
+  std::map<std::int64_t, std::vector<mission::MissionRecord>> groups;
+  for (const mission::MissionRecord& mission : missions) groups[mission.network].push_back(mission);
+  std::vector<std::vector<mission::MissionRecord>> list;
   for (auto& [network, group] : groups) list.push_back(std::move(group));
   return list;
 }
@@ -119,15 +121,16 @@ std::vector<std::vector<MissionRecord>> ByNetwork(const std::vector<MissionRecor
 // The luck of training: networks are a sample too, and missions of one network share its luck. Student's t over the
 // networks' own values holds both kinds of chance; few networks can agree by accident, so it only ever widens the
 // interval over missions.
-void WidenByNetworks(const MetricDefinition& metric, const std::vector<std::vector<MissionRecord>>& groups,
-                     const WorstErrors& worst, MetricValue& result) {
+void WidenByNetworks(const MetricDefinition& metric,
+                     const std::vector<std::vector<mission::MissionRecord>>& groups, const WorstErrors& worst,
+                     MetricValue& result) {
   if (std::isnan(result.lo)) return;
   std::vector<double> values;
-  for (const std::vector<MissionRecord>& group : groups) {
+  for (const std::vector<mission::MissionRecord>& group : groups) {
     const double value = Evaluate(metric, group, worst).value;
     if (!std::isnan(value)) values.push_back(value);
   }
-  const Interval between = MeanInterval(values);
+  const statistics::Interval between = statistics::MeanInterval(values);
   if (!between.Exists()) return;
   const double half_width = 0.5 * (between.hi - between.lo);
   result.lo = std::min(result.lo, std::max(0.0, result.value - half_width));
@@ -136,16 +139,17 @@ void WidenByNetworks(const MetricDefinition& metric, const std::vector<std::vect
 
 }  // namespace
 
-WorstErrors WorstErrorsOf(std::span<const MissionRecord> missions) {
+WorstErrors WorstErrorsOf(std::span<const mission::MissionRecord> missions) {
   WorstErrors worst;
-  for (const MissionRecord& m : missions)
+  for (const mission::MissionRecord& m : missions)
     if (m.predicted_timesteps > 0) worst[m.network] = std::max(worst[m.network], MeanErrorOf(m));
   return worst;
 }
 
-std::vector<double> LookForwardAccuracies(std::span<const MissionRecord> missions, const WorstErrors& worst) {
+std::vector<double> LookForwardAccuracies(std::span<const mission::MissionRecord> missions,
+                                          const WorstErrors& worst) {
   std::vector<double> accuracies;
-  for (const MissionRecord& m : missions) {
+  for (const mission::MissionRecord& m : missions) {
     if (m.predicted_timesteps == 0) {
       accuracies.push_back(std::numeric_limits<double>::quiet_NaN());
       continue;
@@ -159,14 +163,14 @@ std::vector<double> LookForwardAccuracies(std::span<const MissionRecord> mission
 namespace {
 
 ArmMetrics ComputeWith(const ArmData& arm, const WorstErrors& worst) {
-  for (const MissionRecord& mission : arm.missions) CheckRecord(arm, mission);
+  for (const mission::MissionRecord& mission : arm.missions) CheckRecord(arm, mission);
   ArmMetrics metrics{.stage = arm.stage,
                      .name = arm.name,
                      .missions = static_cast<std::int64_t>(arm.missions.size()),
                      .failed = arm.failed,
                      .missing = arm.missing,
                      .values = {}};
-  const std::vector<std::vector<MissionRecord>> groups = ByNetwork(arm.missions);
+  const std::vector<std::vector<mission::MissionRecord>> groups = ByNetwork(arm.missions);
   metrics.networks = groups.size() > 1 ? static_cast<int>(groups.size()) : 0;
   for (const MetricDefinition& metric : MetricDefinitions()) {
     metrics.values.push_back(Evaluate(metric, arm.missions, worst));
@@ -181,4 +185,4 @@ ArmMetrics ComputeMetrics(const ArmData& arm) { return ComputeWith(arm, WorstErr
 
 ArmMetrics ComputeP85(const ArmData& arm) { return ComputeWith(P85Group(arm), WorstErrorsOf(arm.missions)); }
 
-}  // namespace ed3r
+}  // namespace ed3r::metrics

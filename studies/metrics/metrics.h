@@ -12,7 +12,7 @@
 #include "studies/metrics/arm.h"
 #include "studies/metrics/definitions.h"
 
-namespace ed3r {
+namespace ed3r::metrics {
 
 // A value and its interval, in the metric's unit. NaN is "none": no value from an empty sample (or where no
 // network predicted), no interval from fewer than two missions or for a maximum.
@@ -48,10 +48,11 @@ ArmMetrics ComputeP85(const ArmData& arm);
 
 // The largest mean error of a mission, by network.
 using WorstErrors = std::map<std::int64_t, double>;
-WorstErrors WorstErrorsOf(std::span<const MissionRecord> missions);
+WorstErrors WorstErrorsOf(std::span<const mission::MissionRecord> missions);
 
 // LF accuracy of each mission (R29): 1 - MAE / the largest MAE of its network in `worst`; 1 where no prediction was off, NaN
 // where there was none.
-std::vector<double> LookForwardAccuracies(std::span<const MissionRecord> missions, const WorstErrors& worst);
+std::vector<double> LookForwardAccuracies(std::span<const mission::MissionRecord> missions,
+                                          const WorstErrors& worst);
 
-}  // namespace ed3r
+}  // namespace ed3r::metrics

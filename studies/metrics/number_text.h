@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace ed3r {
+namespace ed3r::metrics {
 
 // null where there is none.
 inline nlohmann::ordered_json JsonNumber(double value) {
@@ -17,4 +17,4 @@ inline nlohmann::ordered_json JsonNumber(double value) {
 // An empty field where there is none; read back, the others have the same bits.
 inline std::string CsvNumber(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
-}  // namespace ed3r
+}  // namespace ed3r::metrics

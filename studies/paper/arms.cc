@@ -4,7 +4,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::paper {
 namespace {
 
 constexpr PaperArm kArms[] = {
@@ -71,4 +71,4 @@ const PaperArm* FindPaperWarmup(std::string_view strategy) {
   return FindArm([&](const PaperArm& arm) { return arm.warmup && arm.strategy == strategy; });
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::paper

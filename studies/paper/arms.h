@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::paper {
 
 // Missions of an online arm and of the warm-up in the paper.
 inline constexpr int kPaperOnlineMissions = 850, kPaperWarmupMissions = 2040;
@@ -47,4 +47,4 @@ std::string_view ArmOfP85Name(std::string_view name);
 // The warm-up that flies this strategy, whatever it is called; null where none does.
 const PaperArm* FindPaperWarmup(std::string_view strategy);
 
-}  // namespace ed3r
+}  // namespace ed3r::paper

@@ -9,7 +9,7 @@
 #include "engine/core/check.h"
 #include "engine/core/csv_table.h"
 
-namespace ed3r {
+namespace ed3r::paper {
 namespace {
 
 const std::vector<std::string> kColumns = {
@@ -110,4 +110,4 @@ std::optional<PaperValue> FindPaperValue(const std::vector<Claim>& claims, std::
   return best;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::paper

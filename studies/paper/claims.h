@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::paper {
 
 // One row of claims.csv. `kind`:
 //   value   a number of one arm
@@ -65,4 +65,4 @@ std::optional<PaperValue> FindPaperValue(const std::vector<Claim>& claims, std::
 // The text of claims.csv.
 std::string_view ClaimsCsv();
 
-}  // namespace ed3r
+}  // namespace ed3r::paper

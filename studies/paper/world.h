@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-namespace ed3r {
+namespace ed3r::paper {
 
 // One file of it, as it lay beside the program's sources when that was built.
 struct PaperWorldFile {
@@ -17,4 +17,4 @@ struct PaperWorldFile {
 // The world file first, then all that it reads.
 std::span<const PaperWorldFile> PaperWorldFiles();
 
-}  // namespace ed3r
+}  // namespace ed3r::paper

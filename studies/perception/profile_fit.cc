@@ -12,7 +12,7 @@
 #include "studies/perception/profile_judgement.h"
 #include "studies/perception/profile_model.h"
 
-namespace ed3r {
+namespace ed3r::perception_fit {
 namespace {
 
 using profile::Given, profile::Response, profile::Weights;
@@ -23,7 +23,7 @@ constexpr int kMinPeriods = 50;
 // tells them apart, and is what missions live on.
 struct Residual {
   PeriodLook look;
-  Given given;
+  perception_fit::profile::Given given;
 
   template <class T>
   bool operator()(const T* weights, const T* response, T* residual) const {
@@ -74,8 +74,8 @@ std::vector<PeriodLook> LooksToFit(std::span<const PeriodLook> looks) {
 }
 
 struct Solution {
-  Weights weights;
-  Response full, quantized;
+  perception_fit::profile::Weights weights;
+  perception_fit::profile::Response full, quantized;
   double cost = std::numeric_limits<double>::infinity();
 };
 
@@ -90,8 +90,8 @@ void Bound(ceres::Problem& problem, std::array<double, kCount>& block,
   }
 }
 
-void Solve(std::span<const PeriodLook> looks, const Given& full_given, const Given& quantized_given,
-           Solution& solution) {
+void Solve(std::span<const PeriodLook> looks, const perception_fit::profile::Given& full_given,
+           const perception_fit::profile::Given& quantized_given, Solution& solution) {
   auto& [weights, full, quantized, cost] = solution;
   ceres::Problem problem;
   for (const PeriodLook& look : looks)
@@ -100,7 +100,7 @@ void Solve(std::span<const PeriodLook> looks, const Given& full_given, const Giv
                              nullptr, weights.data(), look.quantized ? quantized.data() : full.data());
   Bound<2>(problem, weights, {{{std::log(1e-4), std::log(10.0)}, {std::log(1e-4), std::log(10.0)}}});
   const double least_ceiling = std::max(full_given.threshold, kReliable) + 0.05;
-  for (Response* response : {&full, &quantized})
+  for (perception_fit::profile::Response* response : {&full, &quantized})
     Bound<4>(problem, *response,
              {{{std::log(1e-6), std::log(0.5)},
                {0.2, 40.0},
@@ -118,15 +118,15 @@ void Solve(std::span<const PeriodLook> looks, const Given& full_given, const Giv
 }
 
 // A steep and a flat response can both be local minima: several starts, the least cost wins.
-Solution BestOfStarts(std::span<const PeriodLook> looks, const Given& full, const Given& quantized,
-                      const PerceptionConfig& start) {
+Solution BestOfStarts(std::span<const PeriodLook> looks, const perception_fit::profile::Given& full,
+                      const perception_fit::profile::Given& quantized, const PerceptionConfig& start) {
   Solution best;
   for (const double slope : {3.0, 8.0}) {
     for (const double sigma : {0.7, 2.0}) {
       Solution solution{profile::WeightsOf(start, start.full),
                         profile::ResponseOf(start.full, start.fire_weight),
                         profile::ResponseOf(start.quantized, start.fire_weight)};
-      for (Response* response : {&solution.full, &solution.quantized}) {
+      for (perception_fit::profile::Response* response : {&solution.full, &solution.quantized}) {
         (*response)[1] = slope;
         (*response)[3] = std::log(sigma);
       }
@@ -159,14 +159,17 @@ ProfileFit FitProfile(std::span<const PeriodLook> looks, const PerceptionConfig&
                     "allowed: a threshold above 0 and up to 0.9, a weight above 0",
                     start.frame_threshold, start.fire_weight));
   const std::vector<PeriodLook> fitted = LooksToFit(looks);
-  const Given full_given{start.frame_threshold, FrameSigma(fitted, false, start.frame_threshold)};
-  const Given quantized_given{start.frame_threshold, FrameSigma(fitted, true, start.frame_threshold)};
+  const perception_fit::profile::Given full_given{start.frame_threshold,
+                                                  FrameSigma(fitted, false, start.frame_threshold)};
+  const perception_fit::profile::Given quantized_given{start.frame_threshold,
+                                                       FrameSigma(fitted, true, start.frame_threshold)};
   const auto [weights, full, quantized, cost] = BestOfStarts(fitted, full_given, quantized_given, start);
 
   ProfileFit fit;
   fit.smoke_weight = std::exp(weights[0]);
   fit.distractor_weight = std::exp(weights[1]);
-  const auto config_of = [](const Response& r, const Given& given) {
+  const auto config_of = [](const perception_fit::profile::Response& r,
+                            const perception_fit::profile::Given& given) {
     return ResponseConfig{std::exp(r[0]), r[1], r[2], std::exp(r[3]), given.frame_sigma};
   };
   fit.full.response = config_of(full, full_given);
@@ -177,18 +180,20 @@ ProfileFit FitProfile(std::span<const PeriodLook> looks, const PerceptionConfig&
 
 double ExpectedConfidence(const PeriodLook& look, const PerceptionConfig& perception) {
   const ResponseConfig& r = look.quantized ? perception.quantized : perception.full;
-  const Weights weights = profile::WeightsOf(perception, r);
-  const Response response = profile::ResponseOf(r, perception.fire_weight);
-  return profile::ExpectedMean(look, Given{perception.frame_threshold, r.frame_sigma}, weights.data(),
-                               response.data());
+  const perception_fit::profile::Weights weights = profile::WeightsOf(perception, r);
+  const perception_fit::profile::Response response = profile::ResponseOf(r, perception.fire_weight);
+  return profile::ExpectedMean(look,
+                               perception_fit::profile::Given{perception.frame_threshold, r.frame_sigma},
+                               weights.data(), response.data());
 }
 
 double AlarmProbability(const PeriodLook& look, const PerceptionConfig& perception) {
   const ResponseConfig& r = look.quantized ? perception.quantized : perception.full;
-  const Weights weights = profile::WeightsOf(perception, r);
-  const Response response = profile::ResponseOf(r, perception.fire_weight);
-  return profile::ProbabilityAbove(kReliable, look, Given{perception.frame_threshold, r.frame_sigma},
+  const perception_fit::profile::Weights weights = profile::WeightsOf(perception, r);
+  const perception_fit::profile::Response response = profile::ResponseOf(r, perception.fire_weight);
+  return profile::ProbabilityAbove(kReliable, look,
+                                   perception_fit::profile::Given{perception.frame_threshold, r.frame_sigma},
                                    weights.data(), response.data());
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception_fit

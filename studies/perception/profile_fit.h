@@ -20,7 +20,7 @@
 
 #include "engine/config/perception.h"
 
-namespace ed3r {
+namespace ed3r::perception_fit {
 
 // One sensing period of a mission in the pixel tier, and what the fast tier's geometry sees from the same pose.
 struct PeriodLook {
@@ -90,4 +90,4 @@ std::string ProfileFitYaml(const ProfileFit& fit, const std::string& made_from);
 // Columns model,fire_share,smoke_share,distractor_share,observed,expected,residual.
 std::string LooksCsv(std::span<const PeriodLook> looks, const ProfileFit& fit);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception_fit

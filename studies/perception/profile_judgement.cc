@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ed3r {
+namespace ed3r::perception_fit {
 namespace {
 
 double SignalOf(const PeriodLook& look, const ProfileFit& fit) {
@@ -109,4 +109,4 @@ void JudgeFit(std::span<const PeriodLook> looks, const PerceptionConfig& configu
   fit.false_alarms = FalseAlarms(looks, fitted, configured);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception_fit

@@ -8,7 +8,7 @@
 
 #include "studies/perception/profile_fit.h"
 
-namespace ed3r::profile {
+namespace ed3r::perception_fit::profile {
 
 // Shared by the models: (ln w_smoke, ln w_distractor), against flame.
 using Weights = std::array<double, 2>;
@@ -81,4 +81,4 @@ T ExpectedMean(const PeriodLook& look, const Given& given, const T* weights, con
 Weights WeightsOf(const PerceptionConfig& perception, const ResponseConfig& response);
 Response ResponseOf(const ResponseConfig& response, double fire_weight);
 
-}  // namespace ed3r::profile
+}  // namespace ed3r::perception_fit::profile

@@ -2,7 +2,7 @@
 
 #include "studies/perception/profile_fit.h"
 
-namespace ed3r {
+namespace ed3r::perception_fit {
 namespace {
 
 const char* ModelName(bool quantized) { return quantized ? "Quantized" : "Full"; }
@@ -117,4 +117,4 @@ std::string LooksCsv(std::span<const PeriodLook> looks, const ProfileFit& fit) {
   return csv;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception_fit

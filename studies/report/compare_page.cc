@@ -12,15 +12,15 @@
 #include "studies/report/page_data.h"
 #include "studies/tables/names.h"
 
-namespace ed3r {
+namespace ed3r::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 // All runs as one: stages bear the label of their run.
 struct Together {
-  std::vector<ArmMetrics> metrics;
-  std::vector<ArmPlan> plans;
+  std::vector<metrics::ArmMetrics> metrics;
+  std::vector<figures::ArmPlan> plans;
   PageMissions missions;
   struct Origin {
     std::string run, dir, stored_name;
@@ -30,7 +30,7 @@ struct Together {
 
 void Add(const ComparedRun& run, const std::string& letter, Together& together) {
   Report report;
-  for (const ArmData& arm : run.results.arms) report.told.push_back(ComputeMetrics(arm));
+  for (const metrics::ArmData& arm : run.results.arms) report.told.push_back(metrics::ComputeMetrics(arm));
   PageMissions missions = ReadPageMissions(report, run.results, run.dir);
   for (std::size_t a = 0; a < report.told.size(); ++a) {
     together.origins.push_back({letter, run.dir, report.told[a].stage + '/' + report.told[a].name});
@@ -39,18 +39,19 @@ void Add(const ComparedRun& run, const std::string& letter, Together& together) 
   std::move(report.told.begin(), report.told.end(), std::back_inserter(together.metrics));
   std::move(missions.arms.begin(), missions.arms.end(), std::back_inserter(together.missions.arms));
   std::move(missions.numbers.begin(), missions.numbers.end(), std::back_inserter(together.missions.numbers));
-  for (ArmPlan& plan : ReadArmPlans(ResultReader(run.dir).StoredRecipe().plan_text)) {
+  for (figures::ArmPlan& plan :
+       figures::ReadArmPlans(store::ResultReader(run.dir).StoredRecipe().plan_text)) {
     plan.stage = run.label + '/' + plan.stage;
     together.plans.push_back(std::move(plan));
   }
 }
 
 // The world of the first run's arms.
-FoundScene SceneOf(const ComparedRun& run) {
-  ResultReader reader(run.dir);
-  for (const ArmPlan& plan : ReadArmPlans(reader.StoredRecipe().plan_text))
+figures::FoundScene SceneOf(const ComparedRun& run) {
+  store::ResultReader reader(run.dir);
+  for (const figures::ArmPlan& plan : figures::ReadArmPlans(reader.StoredRecipe().plan_text))
     if (const std::string world = plan.Setting("mission.world"); !world.empty())
-      return FindScene(reader, world);
+      return figures::FindScene(reader, world);
   return {nullptr, "the plan names no world"};
 }
 
@@ -68,15 +69,15 @@ std::string Names(const std::vector<ComparedRun>& runs) {
 
 }  // namespace
 
-std::vector<std::string> ComparisonSentences(const VariantStudy& study) {
+std::vector<std::string> ComparisonSentences(const variants::VariantStudy& study) {
   std::vector<std::string> sentences;
   for (std::size_t v = 1; v < study.variants.size(); ++v) {
     const std::string& name = study.variants[v];
     int all = 0, certain = 0;
-    for (const VariantDifference& d : study.differences)
+    for (const variants::VariantDifference& d : study.differences)
       if (d.variant == name) ++all, certain += d.Certain();
     int changed = 0, contradict = 0;
-    for (const VerdictChange& change : study.changes)
+    for (const variants::VerdictChange& change : study.changes)
       if (change.variant == name) ++changed, contradict += change.Contradicts();
     std::string sentence = fmt::format(
         "{} against {}: {} of {} differences of arms in energy, success and duration are certain (95 %, {})",
@@ -91,20 +92,20 @@ std::vector<std::string> ComparisonSentences(const VariantStudy& study) {
   return sentences;
 }
 
-Json ComparePageData(const std::vector<ComparedRun>& runs, const VariantStudy& study,
+Json ComparePageData(const std::vector<ComparedRun>& runs, const variants::VariantStudy& study,
                      const std::vector<std::string>& departures, const std::string& command) {
   ED3R_CHECK(runs.size() > 1, "runs to compare");
   Together together;
   for (std::size_t r = 0; r < runs.size(); ++r) Add(runs[r], Letter(r), together);
-  const FoundScene found = SceneOf(runs.front());
-  Json figures = MakeFigureData({.name = Names(runs),
-                                 .arms = together.missions.arms,
-                                 .metrics = together.metrics,
-                                 .plans = together.plans,
-                                 .missions = {},
-                                 .scene = found.scene,
-                                 .scene_note = found.why_not,
-                                 .variants = &study});
+  const figures::FoundScene found = SceneOf(runs.front());
+  Json figures = figures::MakeFigureData({.name = Names(runs),
+                                          .arms = together.missions.arms,
+                                          .metrics = together.metrics,
+                                          .plans = together.plans,
+                                          .missions = {},
+                                          .scene = found.scene,
+                                          .scene_note = found.why_not,
+                                          .variants = &study});
   figures["figures"] = Json::array();
   Report report;
   report.name = Names(runs);
@@ -127,7 +128,7 @@ Json ComparePageData(const std::vector<ComparedRun>& runs, const VariantStudy& s
   for (std::size_t a = 0; a < together.origins.size(); ++a) {
     const Together::Origin& origin = together.origins[a];
     Json& arm = data["arms"][a];
-    arm["label"] = fmt::format("{} · {}", ArmLabel(together.metrics[a].name), origin.run);
+    arm["label"] = fmt::format("{} · {}", tables::ArmLabel(together.metrics[a].name), origin.run);
     arm["run"] = origin.run;
     arm["stored_name"] = origin.stored_name;
     arm["dir"] = origin.dir;
@@ -135,4 +136,4 @@ Json ComparePageData(const std::vector<ComparedRun>& runs, const VariantStudy& s
   return data;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::report

@@ -7,7 +7,7 @@
 
 #include "studies/report/report.h"
 
-namespace ed3r {
+namespace ed3r::report {
 
 struct ComparedRun {
   std::string label, dir;
@@ -17,11 +17,12 @@ struct ComparedRun {
 // The document of page_data.h. Arms are keyed LABEL/STAGE/NAME; the paper's values stand beside each; claims are judged by the
 // first run; `study` compares the others with it, and its differences are the page's answer; `departures` are sentences for its head. Tables and figures are none: each
 // run's own report has them. Throws UserError as LoadRun.
-nlohmann::ordered_json ComparePageData(const std::vector<ComparedRun>& runs, const VariantStudy& study,
+nlohmann::ordered_json ComparePageData(const std::vector<ComparedRun>& runs,
+                                       const variants::VariantStudy& study,
                                        const std::vector<std::string>& departures,
                                        const std::string& command);
 
 // One sentence on each run after the first: how many differences are certain, how many verdicts change.
-std::vector<std::string> ComparisonSentences(const VariantStudy& study);
+std::vector<std::string> ComparisonSentences(const variants::VariantStudy& study);
 
-}  // namespace ed3r
+}  // namespace ed3r::report

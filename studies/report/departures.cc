@@ -14,7 +14,7 @@
 #include "studies/paper/arms.h"
 #include "studies/paper/world.h"
 
-namespace ed3r {
+namespace ed3r::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -26,7 +26,7 @@ constexpr std::size_t kMostTold = 3;  // values, arms or variants
 struct FlownArm {
   std::string name;  // without its variant
   const std::map<std::string, std::string>* settings;
-  const PaperArm* paper;  // null: an arm of somebody's own
+  const paper::PaperArm* paper;  // null: an arm of somebody's own
   bool warmup;
 };
 
@@ -35,19 +35,19 @@ std::string Setting(const std::map<std::string, std::string>& settings, const st
   return found == settings.end() ? "" : found->second;
 }
 
-std::set<std::string> WarmupStages(const WrittenPlan& plan) {
+std::set<std::string> WarmupStages(const sweep::WrittenPlan& plan) {
   std::set<std::string> stages;
-  for (const WrittenPlan::Stage& stage : plan.stages)
-    if (stage.kind == StageKind::kTrain) stages.insert(stage.after.begin(), stage.after.end());
+  for (const sweep::WrittenPlan::Stage& stage : plan.stages)
+    if (stage.kind == sweep::StageKind::kTrain) stages.insert(stage.after.begin(), stage.after.end());
   return stages;
 }
 
-FlownArm FlownArmOf(const WrittenPlan::Arm& arm, bool learned_from) {
-  FlownArm flown{ArmId::Of(arm.name).name, &arm.settings, nullptr, learned_from};
-  flown.paper = FindPaperArm(flown.name);
+FlownArm FlownArmOf(const sweep::WrittenPlan::Arm& arm, bool learned_from) {
+  FlownArm flown{sweep::ArmId::Of(arm.name).name, &arm.settings, nullptr, learned_from};
+  flown.paper = paper::FindPaperArm(flown.name);
   // Networks learn from whatever flies a warm-up's strategy, by any name.
   if (flown.paper == nullptr && learned_from)
-    flown.paper = FindPaperWarmup(Setting(arm.settings, "mission.strategy"));
+    flown.paper = paper::FindPaperWarmup(Setting(arm.settings, "mission.strategy"));
   if (flown.paper != nullptr) flown.warmup = flown.paper->warmup;
   return flown;
 }
@@ -123,10 +123,11 @@ void CompareParameter(const ParameterInfo& parameter, const std::vector<FlownArm
   effort.EndKey(parameter.key, found.effort);
 }
 
-void CompareMissions(const WrittenPlan::Stage& stage, const std::vector<FlownArm>& arms, Departures& found) {
+void CompareMissions(const sweep::WrittenPlan::Stage& stage, const std::vector<FlownArm>& arms,
+                     Departures& found) {
   const auto named = std::find_if(arms.begin(), arms.end(), [](const FlownArm& arm) { return arm.paper; });
   if (named == arms.end() || stage.precision) return;  // with a precision it flies what that takes
-  const int paper = named->paper->warmup ? kPaperWarmupMissions : kPaperOnlineMissions;
+  const int paper = named->paper->warmup ? paper::kPaperWarmupMissions : paper::kPaperOnlineMissions;
   if (stage.missions != paper)
     found.effort.push_back(
         {"missions of " + stage.name, {std::to_string(stage.missions)}, std::to_string(paper), {}});
@@ -147,19 +148,19 @@ Json ListJson(const std::vector<Departure>& departures) {
 }
 
 // Worlds of the run, as its plan calls them, whose files are those of the paper's.
-std::set<std::string> PaperWorlds(const Recipe& recipe, const std::vector<InputFile>& files) {
+std::set<std::string> PaperWorlds(const store::Recipe& recipe, const std::vector<store::InputFile>& files) {
   const auto is_there = [&](const std::filesystem::path& name, std::string_view sha256) {
-    return std::any_of(files.begin(), files.end(), [&](const InputFile& file) {
+    return std::any_of(files.begin(), files.end(), [&](const store::InputFile& file) {
       return file.name == name.lexically_normal().string() && file.sha256 == sha256;
     });
   };
   std::set<std::string> worlds;
   for (const auto& [called, file] : recipe.places) {
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-    const std::span<const PaperWorldFile> parts = PaperWorldFiles();
+    const std::span<const paper::PaperWorldFile> parts = paper::PaperWorldFiles();
     // What a world file names is beside it; its own name does not matter.
     const bool same = is_there(file, parts.front().sha256) &&
-                      std::all_of(parts.begin() + 1, parts.end(), [&](const PaperWorldFile& part) {
+                      std::all_of(parts.begin() + 1, parts.end(), [&](const paper::PaperWorldFile& part) {
                         return is_there(folder / part.name, part.sha256);
                       });
     if (same) worlds.insert(called);
@@ -171,15 +172,15 @@ std::set<std::string> PaperWorlds(const Recipe& recipe, const std::vector<InputF
 
 Departures DeparturesOf(std::string_view plan_text, const std::string& variant,
                         const std::set<std::string>& paper_worlds) {
-  const WrittenPlan plan = ReadPlanText(plan_text);
+  const sweep::WrittenPlan plan = sweep::ReadPlanText(plan_text);
   const std::set<std::string> warmups = WarmupStages(plan);
   std::vector<FlownArm> all;
   Departures found;
-  for (const WrittenPlan::Stage& stage : plan.stages) {
-    if (stage.kind != StageKind::kFly) continue;
+  for (const sweep::WrittenPlan::Stage& stage : plan.stages) {
+    if (stage.kind != sweep::StageKind::kFly) continue;
     std::vector<FlownArm> arms;
-    for (const WrittenPlan::Arm& arm : stage.arms)
-      if (ArmId::Of(arm.name).variant == variant)
+    for (const sweep::WrittenPlan::Arm& arm : stage.arms)
+      if (sweep::ArmId::Of(arm.name).variant == variant)
         arms.push_back(FlownArmOf(arm, warmups.contains(stage.name)));
     CompareMissions(stage, arms, found);
     all.insert(all.end(), arms.begin(), arms.end());
@@ -189,12 +190,12 @@ Departures DeparturesOf(std::string_view plan_text, const std::string& variant,
   return found;
 }
 
-RunDepartures ReadDepartures(ResultReader& reader) {
+RunDepartures ReadDepartures(store::ResultReader& reader) {
   const std::set<std::string> worlds = PaperWorlds(reader.StoredRecipe(), reader.Files());
   std::set<std::string> variants;
-  for (const RunLayout::Stage& stage : reader.Layout().stages)
-    for (const RunLayout::Arm& arm : stage.arms)
-      if (stage.missions > 0) variants.insert(ArmId::Of(arm.name).variant);
+  for (const store::RunLayout::Stage& stage : reader.Layout().stages)
+    for (const store::RunLayout::Arm& arm : stage.arms)
+      if (stage.missions > 0) variants.insert(sweep::ArmId::Of(arm.name).variant);
   RunDepartures departures;
   for (const std::string& variant : variants)
     departures[variant] = DeparturesOf(reader.StoredRecipe().plan_text, variant, worlds);
@@ -247,4 +248,4 @@ Json DeparturesJson(const Departures& departures, Judging judging) {
           {"effort", ListJson(departures.effort)}};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::report

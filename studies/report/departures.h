@@ -13,9 +13,11 @@
 #include <string_view>
 #include <vector>
 
-namespace ed3r {
-
+namespace ed3r::store {
 class ResultReader;
+}  // namespace ed3r::store
+
+namespace ed3r::report {
 
 struct Departure {
   std::string key;                  // of a parameter, or "missions of STAGE"
@@ -39,7 +41,7 @@ Departures DeparturesOf(std::string_view plan_text, const std::string& variant,
 
 // By variant, "" in a run without variants.
 using RunDepartures = std::map<std::string, Departures>;
-RunDepartures ReadDepartures(ResultReader& reader);
+RunDepartures ReadDepartures(store::ResultReader& reader);
 
 // What a report does about claims.
 enum class Judging {
@@ -57,4 +59,4 @@ std::vector<std::string> DepartureSentences(const RunDepartures& departures, con
 // {"paper_flown", "claims_judged", "results", "aside", "effort"}; each entry {"parameter", "values", "paper", "arms"}.
 nlohmann::ordered_json DeparturesJson(const Departures& departures, Judging judging);
 
-}  // namespace ed3r
+}  // namespace ed3r::report

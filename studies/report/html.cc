@@ -10,7 +10,7 @@
 #include "studies/tables/layout.h"
 #include "studies/tables/paper_cell.h"
 
-namespace ed3r {
+namespace ed3r::report {
 namespace {
 
 // One fact of the list at the top.
@@ -59,28 +59,31 @@ std::string WhatWasRun(const Provenance& p) {
          Fact("when", HtmlText(when)) + Fact("digest of the results", Code(p.digest)) + "</dl></section>\n";
 }
 
-std::string TableCell(const ArmMetrics& arm, std::size_t metric) {
-  const MetricValue& ours = arm.values[metric];
-  const int decimals = MetricDefinitions()[metric].decimals;
-  std::string cell = "<td><b>" + FormatValue(ours.value, decimals) + "</b>";
+std::string TableCell(const metrics::ArmMetrics& arm, std::size_t metric) {
+  const metrics::MetricValue& ours = arm.values[metric];
+  const int decimals = metrics::MetricDefinitions()[metric].decimals;
+  std::string cell = "<td><b>" + tables::FormatValue(ours.value, decimals) + "</b>";
   if (!std::isnan(ours.lo))
-    cell += "<i>" + FormatValue(ours.lo, decimals) + "–" + FormatValue(ours.hi, decimals) + "</i>";
-  if (const PaperCell paper = MakePaperCell(PaperClaims(), arm, metric); paper.value)
+    cell += "<i>" + tables::FormatValue(ours.lo, decimals) + "–" + tables::FormatValue(ours.hi, decimals) +
+            "</i>";
+  if (const tables::PaperCell paper = tables::MakePaperCell(paper::PaperClaims(), arm, metric); paper.value)
     cell += fmt::format("<u{}>{}{}</u>", paper.within ? " class=\"in\"" : "",
                         paper.value->approximate ? "~" : "", HtmlText(paper.value->printed));
   return cell + "</td>";
 }
 
-std::string TableHtml(const StudyTable& table) {
+std::string TableHtml(const tables::StudyTable& table) {
   std::string html = fmt::format("<h3 id=\"table-{}\">{}</h3>\n<div class=\"wide\"><table>\n<tr><th></th>",
                                  HtmlText(table.id), HtmlText(table.title));
   const std::size_t rows = table.arms_down ? table.arms.size() : table.metrics.size();
   const std::size_t columns = table.arms_down ? table.metrics.size() : table.arms.size();
   for (std::size_t c = 0; c < columns; ++c)
-    html += "<th>" + HtmlText(table.arms_down ? MetricHeading(table.metrics[c]) : table.labels[c]) + "</th>";
+    html += "<th>" + HtmlText(table.arms_down ? tables::MetricHeading(table.metrics[c]) : table.labels[c]) +
+            "</th>";
   html += "</tr>\n";
   for (std::size_t r = 0; r < rows; ++r) {
-    html += "<tr><th>" + HtmlText(table.arms_down ? table.labels[r] : MetricHeading(table.metrics[r]));
+    html +=
+        "<tr><th>" + HtmlText(table.arms_down ? table.labels[r] : tables::MetricHeading(table.metrics[r]));
     if (table.arms_down) html += fmt::format(" <small>{}</small>", table.arms[r].missions);
     html += "</th>";
     for (std::size_t c = 0; c < columns; ++c)
@@ -180,4 +183,4 @@ std::string ReportPage(const PageInputs& inputs) {
       HtmlText(inputs.report.name), ReportContent(inputs));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::report

@@ -9,7 +9,7 @@
 #include "studies/report/provenance.h"
 #include "studies/report/report.h"
 
-namespace ed3r {
+namespace ed3r::report {
 
 struct PageInputs {
   const Report& report;
@@ -24,4 +24,4 @@ std::string ReportPage(const PageInputs& inputs);
 // The same without the document around it: its style, then its content.
 std::string ReportContent(const PageInputs& inputs);
 
-}  // namespace ed3r
+}  // namespace ed3r::report

@@ -8,25 +8,25 @@
 #include "studies/figures/run_source.h"
 #include "studies/metrics/metrics.h"
 
-namespace ed3r {
+namespace ed3r::report {
 namespace {
 
-std::vector<MissionRecord> LoadMissions(ResultReader& reader, int stage, int arm) {
-  std::vector<MissionRecord> missions;
-  reader.ForEachMission(stage, arm, Steps::kSkip,
-                        [&](const StoredMission& mission) { missions.push_back(mission.record); });
+std::vector<mission::MissionRecord> LoadMissions(store::ResultReader& reader, int stage, int arm) {
+  std::vector<mission::MissionRecord> missions;
+  reader.ForEachMission(stage, arm, store::Steps::kSkip,
+                        [&](const store::StoredMission& mission) { missions.push_back(mission.record); });
   return missions;
 }
 
-double HalfWidthOf(ArmData arm, int missions, const std::string& metric) {
+double HalfWidthOf(metrics::ArmData arm, int missions, const std::string& metric) {
   if (static_cast<int>(arm.missions.size()) < missions) return std::numeric_limits<double>::quiet_NaN();
   arm.missions.resize(static_cast<std::size_t>(missions));
-  const MetricValue value = ComputeMetrics(arm)[metric];
+  const metrics::MetricValue value = metrics::ComputeMetrics(arm)[metric];
   return 0.5 * (value.hi - value.lo);
 }
 
 // An arm that is known well enough misses nothing.
-bool KnownWellEnough(const ArmData& arm, const std::optional<Precision>& precision) {
+bool KnownWellEnough(const metrics::ArmData& arm, const std::optional<sweep::Precision>& precision) {
   if (!precision) return false;
   const auto flown = static_cast<int>(arm.missions.size());
   return flown > 0 && precision->every > 0 && flown % precision->every == 0 &&
@@ -36,20 +36,21 @@ bool KnownWellEnough(const ArmData& arm, const std::optional<Precision>& precisi
 }  // namespace
 
 RunResults LoadRun(const std::string& dir) {
-  ResultReader reader(dir);
-  const RunLayout& layout = reader.Layout();
+  store::ResultReader reader(dir);
+  const store::RunLayout& layout = reader.Layout();
   RunResults results{layout.name, {}};
-  if (MixedCode(reader.StoredRecipe().code)) results.mixed_code = CodeText(reader.StoredRecipe().code);
-  const std::vector<ArmStatus> status = reader.Status();
-  const std::vector<ArmPlan> plans = ReadArmPlans(reader.StoredRecipe().plan_text);
+  if (store::MixedCode(reader.StoredRecipe().code))
+    results.mixed_code = store::CodeText(reader.StoredRecipe().code);
+  const std::vector<store::ArmStatus> status = reader.Status();
+  const std::vector<figures::ArmPlan> plans = figures::ReadArmPlans(reader.StoredRecipe().plan_text);
   for (int s = 0; s < static_cast<int>(layout.stages.size()); ++s) {
-    const RunLayout::Stage& stage = layout.stages[s];
+    const store::RunLayout::Stage& stage = layout.stages[s];
     if (stage.missions == 0) continue;
-    const auto plan =
-        std::find_if(plans.begin(), plans.end(), [&](const ArmPlan& p) { return p.stage == stage.name; });
-    const std::optional<Precision> precision = plan == plans.end() ? std::nullopt : plan->precision;
+    const auto plan = std::find_if(plans.begin(), plans.end(),
+                                   [&](const figures::ArmPlan& p) { return p.stage == stage.name; });
+    const std::optional<sweep::Precision> precision = plan == plans.end() ? std::nullopt : plan->precision;
     for (int a = 0; a < static_cast<int>(stage.arms.size()); ++a) {
-      ArmData arm{stage.name, stage.arms[a].name, LoadMissions(reader, s, a)};
+      metrics::ArmData arm{stage.name, stage.arms[a].name, LoadMissions(reader, s, a)};
       const auto flown = static_cast<std::int64_t>(arm.missions.size());
       // Counted from the missions at hand: more may have come in since the status was read.
       arm.failed = static_cast<int>(std::min(status[layout.RunIndex(s, a)].failed, stage.missions - flown));
@@ -62,11 +63,11 @@ RunResults LoadRun(const std::string& dir) {
 }
 
 double HalfWidth(const std::string& dir, int stage, int arm, int missions, const std::string& metric) {
-  ResultReader reader(dir);
-  const RunLayout::Stage& flown = reader.Layout().stages.at(static_cast<std::size_t>(stage));
-  ArmData data{flown.name, flown.arms.at(static_cast<std::size_t>(arm)).name,
-               LoadMissions(reader, stage, arm)};
+  store::ResultReader reader(dir);
+  const store::RunLayout::Stage& flown = reader.Layout().stages.at(static_cast<std::size_t>(stage));
+  metrics::ArmData data{flown.name, flown.arms.at(static_cast<std::size_t>(arm)).name,
+                        LoadMissions(reader, stage, arm)};
   return HalfWidthOf(std::move(data), missions, metric);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::report

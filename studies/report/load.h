@@ -5,7 +5,7 @@
 
 #include "studies/report/report.h"
 
-namespace ed3r {
+namespace ed3r::report {
 
 // Every arm of the flying stages of the store in `dir`, in plan order, with its missions (without timesteps)
 // and how many failed or are missing; training stages are left out. The run may still be going on: a mission
@@ -17,4 +17,4 @@ RunResults LoadRun(const std::string& dir);
 // or are not all stored. For stages with a precision (engine/sweep/plan.h).
 double HalfWidth(const std::string& dir, int stage, int arm, int missions, const std::string& metric);
 
-}  // namespace ed3r
+}  // namespace ed3r::report

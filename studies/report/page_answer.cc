@@ -8,37 +8,41 @@
 #include "engine/core/check.h"
 #include "studies/tables/names.h"
 
-namespace ed3r {
+namespace ed3r::report {
 namespace {
 
-using Arms = std::vector<const ArmMetrics*>;
+using Arms = std::vector<const metrics::ArmMetrics*>;
 
-double Success(const ArmMetrics& arm) { return arm["msr_pct"].value; }
-double Energy(const ArmMetrics& arm) { return arm["total_energy_kj"].value; }
+double Success(const metrics::ArmMetrics& arm) { return arm["msr_pct"].value; }
+double Energy(const metrics::ArmMetrics& arm) { return arm["total_energy_kj"].value; }
 
-bool Overlap(const MetricValue& a, const MetricValue& b) { return !(a.lo > b.hi || b.lo > a.hi); }
+bool Overlap(const metrics::MetricValue& a, const metrics::MetricValue& b) {
+  return !(a.lo > b.hi || b.lo > a.hi);
+}
 
-std::string WithInterval(const MetricValue& value, int decimals, const char* unit) {
+std::string WithInterval(const metrics::MetricValue& value, int decimals, const char* unit) {
   if (std::isnan(value.lo)) return fmt::format("{:.{}f} {}", value.value, decimals, unit);
   return fmt::format("{:.{}f} {} ({:.{}f}–{:.{}f})", value.value, decimals, unit, value.lo, decimals,
                      value.hi, decimals);
 }
 
-std::string Tells(const ArmMetrics& arm) {
+std::string Tells(const metrics::ArmMetrics& arm) {
   return fmt::format("finds the fire in {} of its missions, for {} each",
                      WithInterval(arm["msr_pct"], 1, "%"), WithInterval(arm["total_energy_kj"], 1, "kJ"));
 }
 
-const ArmMetrics* Named(const Arms& arms, std::string_view name) {
-  const auto found =
-      std::find_if(arms.begin(), arms.end(), [&](const ArmMetrics* arm) { return arm->name == name; });
+const metrics::ArmMetrics* Named(const Arms& arms, std::string_view name) {
+  const auto found = std::find_if(arms.begin(), arms.end(),
+                                  [&](const metrics::ArmMetrics* arm) { return arm->name == name; });
   return found == arms.end() ? nullptr : *found;
 }
 
-const ArmMetrics* Extreme(const Arms& arms, double (*value)(const ArmMetrics&), double sign) {
-  return *std::max_element(arms.begin(), arms.end(), [&](const ArmMetrics* a, const ArmMetrics* b) {
-    return sign * value(*a) < sign * value(*b);
-  });
+const metrics::ArmMetrics* Extreme(const Arms& arms, double (*value)(const metrics::ArmMetrics&),
+                                   double sign) {
+  return *std::max_element(arms.begin(), arms.end(),
+                           [&](const metrics::ArmMetrics* a, const metrics::ArmMetrics* b) {
+                             return sign * value(*a) < sign * value(*b);
+                           });
 }
 
 std::string Than(double ours, double theirs, const char* more, const char* less) {
@@ -46,13 +50,13 @@ std::string Than(double ours, double theirs, const char* more, const char* less)
 }
 
 // "RBS finds ...: ED³R-75 has 15.4 points more success for 68 % less energy."
-std::string Against(const ArmMetrics& subject, const ArmMetrics& rival) {
-  std::string text =
-      fmt::format("{} {}: {} has {:.1f} points {} success for {:.0f} % {} energy", ArmLabel(rival.name),
-                  Tells(rival), ArmLabel(subject.name), std::abs(Success(subject) - Success(rival)),
-                  Than(Success(subject), Success(rival), "more", "less"),
-                  std::abs(100 * (Energy(subject) / Energy(rival) - 1)),
-                  Than(Energy(subject), Energy(rival), "more", "less"));
+std::string Against(const metrics::ArmMetrics& subject, const metrics::ArmMetrics& rival) {
+  std::string text = fmt::format("{} {}: {} has {:.1f} points {} success for {:.0f} % {} energy",
+                                 tables::ArmLabel(rival.name), Tells(rival), tables::ArmLabel(subject.name),
+                                 std::abs(Success(subject) - Success(rival)),
+                                 Than(Success(subject), Success(rival), "more", "less"),
+                                 std::abs(100 * (Energy(subject) / Energy(rival) - 1)),
+                                 Than(Energy(subject), Energy(rival), "more", "less"));
   const bool success_open = Overlap(subject["msr_pct"], rival["msr_pct"]);
   const bool energy_open = Overlap(subject["total_energy_kj"], rival["total_energy_kj"]);
   if (!success_open && !energy_open) return text + ", and neither pair of 95 % intervals overlaps.";
@@ -67,26 +71,26 @@ std::string Listed(const std::vector<std::string>& names) {
   return fmt::format("{} and {}", fmt::join(most, ", "), names.back());
 }
 
-std::string Preferable(const ArmMetrics& subject, const Arms& arms) {
+std::string Preferable(const metrics::ArmMetrics& subject, const Arms& arms) {
   std::vector<std::string> names;
-  for (const ArmMetrics* arm : arms)
+  for (const metrics::ArmMetrics* arm : arms)
     if (arm != &subject && Success(*arm) >= Success(subject) && Energy(*arm) <= Energy(subject))
-      names.push_back(ArmLabel(arm->name));
+      names.push_back(tables::ArmLabel(arm->name));
   if (names.empty())
     return fmt::format("No other arm has both more success and less energy on average than {}.",
-                       ArmLabel(subject.name));
+                       tables::ArmLabel(subject.name));
   return fmt::format("On average {} {} at least as much success for no more energy than {}.", Listed(names),
-                     names.size() == 1 ? "has" : "have", ArmLabel(subject.name));
+                     names.size() == 1 ? "has" : "have", tables::ArmLabel(subject.name));
 }
 
-std::string Claims(const ClaimStudy& study) {
+std::string Claims(const claims::ClaimStudy& study) {
   if (!study.HasArms()) return "";
   int judged = 0, hold = 0, differ = 0;
-  for (const auto& [verdict, count] : CountVerdicts(study)) {
-    if (verdict == Verdict::kNotMeasured) continue;
+  for (const auto& [verdict, count] : claims::CountVerdicts(study)) {
+    if (verdict == claims::Verdict::kNotMeasured) continue;
     judged += count;
-    if (Holds(verdict)) hold += count;
-    if (verdict == Verdict::kDiffers) differ += count;
+    if (claims::Holds(verdict)) hold += count;
+    if (verdict == claims::Verdict::kDiffers) differ += count;
   }
   if (judged == 0) return "";
   return fmt::format(
@@ -102,10 +106,10 @@ std::vector<std::string> AnswerSentences(const Report& report, const std::vector
   for (std::size_t a = 0; a < report.told.size(); ++a)
     if (!warmups[a] && report.told[a].missions > 0) arms.push_back(&report.told[a]);
   if (arms.empty()) return {};
-  const ArmMetrics* subject = Named(arms, "ed3r-75");
+  const metrics::ArmMetrics* subject = Named(arms, "ed3r-75");
   if (subject == nullptr) subject = Extreme(arms, Success, 1);
-  std::vector<std::string> sentences = {ArmLabel(subject->name) + ' ' + Tells(*subject) + '.'};
-  const ArmMetrics* rival = Named(arms, "rbs");
+  std::vector<std::string> sentences = {tables::ArmLabel(subject->name) + ' ' + Tells(*subject) + '.'};
+  const metrics::ArmMetrics* rival = Named(arms, "rbs");
   if (rival == nullptr || rival == subject) rival = Extreme(arms, Success, -1);
   if (rival == subject) rival = Extreme(arms, Energy, 1);
   if (rival != subject) sentences.push_back(Against(*subject, *rival));
@@ -114,4 +118,4 @@ std::vector<std::string> AnswerSentences(const Report& report, const std::vector
   return sentences;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::report

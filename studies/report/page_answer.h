@@ -6,7 +6,7 @@
 
 #include "studies/report/report.h"
 
-namespace ed3r {
+namespace ed3r::report {
 
 // `warmups`: names of arms that are no answer (parallel to report.told; true: left out). One to three sentences: the arm
 // that the study is about (ed3r-75, else the one with the highest success rate) beside the random walk or the weakest;
@@ -14,4 +14,4 @@ namespace ed3r {
 // the 95 % intervals of the tables do not overlap. Empty without missions.
 std::vector<std::string> AnswerSentences(const Report& report, const std::vector<bool>& warmups);
 
-}  // namespace ed3r
+}  // namespace ed3r::report

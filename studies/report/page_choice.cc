@@ -11,10 +11,10 @@
 #include "studies/figures/run_source.h"
 #include "studies/report/page_data.h"
 
-namespace ed3r {
+namespace ed3r::report {
 namespace {
 
-using Wanted = std::function<bool(const MissionRecord&)>;
+using Wanted = std::function<bool(const mission::MissionRecord&)>;
 
 struct Choice {
   std::size_t arm = 0;
@@ -22,12 +22,13 @@ struct Choice {
   std::string what;
 };
 
-Wanted Ended(Outcome outcome) {
-  return [outcome](const MissionRecord& m) { return m.outcome == static_cast<std::int64_t>(outcome); };
+Wanted Ended(mission::Outcome outcome) {
+  return
+      [outcome](const mission::MissionRecord& m) { return m.outcome == static_cast<std::int64_t>(outcome); };
 }
 
 // Indices of the missions wanted, by duration.
-std::vector<std::size_t> ByDuration(const ArmData& arm, const Wanted& wanted) {
+std::vector<std::size_t> ByDuration(const metrics::ArmData& arm, const Wanted& wanted) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < arm.missions.size(); ++i)
     if (wanted(arm.missions[i])) found.push_back(i);
@@ -38,8 +39,8 @@ std::vector<std::size_t> ByDuration(const ArmData& arm, const Wanted& wanted) {
 }
 
 // Arms that are no warm-up, the one that the study is about first, then by the number of missions wanted.
-std::vector<std::size_t> ArmsToSearch(const std::vector<ArmData>& arms, const std::set<std::string>& warmups,
-                                      const Wanted& wanted) {
+std::vector<std::size_t> ArmsToSearch(const std::vector<metrics::ArmData>& arms,
+                                      const std::set<std::string>& warmups, const Wanted& wanted) {
   const auto count = [&](std::size_t a) {
     return std::count_if(arms[a].missions.begin(), arms[a].missions.end(), wanted);
   };
@@ -53,9 +54,10 @@ std::vector<std::size_t> ArmsToSearch(const std::vector<ArmData>& arms, const st
   return order;
 }
 
-std::vector<Choice> Choose(const std::vector<ArmData>& arms, const std::set<std::string>& warmups) {
+std::vector<Choice> Choose(const std::vector<metrics::ArmData>& arms, const std::set<std::string>& warmups) {
   std::vector<Choice> choices;
-  const Wanted success = Ended(Outcome::kSuccess), any = [](const MissionRecord&) { return true; };
+  const Wanted success = Ended(mission::Outcome::kSuccess),
+               any = [](const mission::MissionRecord&) { return true; };
   const std::vector<std::size_t> order = ArmsToSearch(arms, warmups, success);
   if (order.empty()) return choices;
   const std::size_t studied = order.front();
@@ -71,8 +73,8 @@ std::vector<Choice> Choose(const std::vector<ArmData>& arms, const std::set<std:
   }
   if (const auto found = ByDuration(arms[studied], any); !found.empty())
     choices.push_back({studied, found.back(), "the longest"});
-  for (const auto& [outcome, what] : {std::pair{Outcome::kFalsePositive, "a typical false alarm"},
-                                      std::pair{Outcome::kBatteryDepleted, "an empty battery"}})
+  for (const auto& [outcome, what] : {std::pair{mission::Outcome::kFalsePositive, "a typical false alarm"},
+                                      std::pair{mission::Outcome::kBatteryDepleted, "an empty battery"}})
     for (const std::size_t a : ArmsToSearch(arms, warmups, Ended(outcome)))
       if (const auto found = ByDuration(arms[a], Ended(outcome)); !found.empty()) {
         choices.push_back({a, found[found.size() / 2], what});
@@ -82,11 +84,12 @@ std::vector<Choice> Choose(const std::vector<ArmData>& arms, const std::set<std:
 }
 
 // Stages whose missions networks learnt from; none where nothing else was flown.
-std::set<std::string> WarmupStages(const std::string& dir, const std::vector<ArmData>& arms) {
+std::set<std::string> WarmupStages(const std::string& dir, const std::vector<metrics::ArmData>& arms) {
   std::set<std::string> stages;
-  for (const ArmPlan& plan : ReadArmPlans(ResultReader(dir).StoredRecipe().plan_text))
+  for (const figures::ArmPlan& plan :
+       figures::ReadArmPlans(store::ResultReader(dir).StoredRecipe().plan_text))
     if (plan.warmup) stages.insert(plan.stage);
-  const bool others = std::any_of(arms.begin(), arms.end(), [&](const ArmData& arm) {
+  const bool others = std::any_of(arms.begin(), arms.end(), [&](const metrics::ArmData& arm) {
     return !stages.contains(arm.stage) && !arm.missions.empty();
   });
   return others ? stages : std::set<std::string>();
@@ -99,12 +102,12 @@ std::vector<ChosenMission> ChooseMissions(const Report& report, const RunResults
   const PageMissions missions = ReadPageMissions(report, results, dir);
   std::vector<ChosenMission> chosen;
   for (const Choice& choice : Choose(missions.arms, WarmupStages(dir, missions.arms))) {
-    const ArmData& arm = missions.arms[choice.arm];
-    chosen.push_back({fmt::format("{}/{}/{}", arm.stage, ArmId{arm.name, missions.variant}.Text(),
+    const metrics::ArmData& arm = missions.arms[choice.arm];
+    chosen.push_back({fmt::format("{}/{}/{}", arm.stage, sweep::ArmId{arm.name, missions.variant}.Text(),
                                   missions.numbers[choice.arm][choice.mission]),
                       choice.what});
   }
   return chosen;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::report

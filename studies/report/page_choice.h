@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::report {
 
 struct Report;
 struct RunResults;
@@ -20,4 +20,4 @@ struct ChosenMission {
 std::vector<ChosenMission> ChooseMissions(const Report& report, const RunResults& results,
                                           const std::string& dir);
 
-}  // namespace ed3r
+}  // namespace ed3r::report

@@ -18,7 +18,7 @@
 #include "studies/tables/data_files.h"
 #include "studies/tables/paper_cell.h"
 
-namespace ed3r {
+namespace ed3r::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -30,18 +30,18 @@ Json Number(double value) { return std::isnan(value) ? Json(nullptr) : Json(valu
 
 Json MetricsJson() {
   Json list = Json::array();
-  for (const MetricDefinition& metric : MetricDefinitions())
+  for (const metrics::MetricDefinition& metric : metrics::MetricDefinitions())
     list.push_back({{"name", metric.name},
-                    {"heading", MetricHeading(MetricIndex(metric.name))},
+                    {"heading", tables::MetricHeading(metrics::MetricIndex(metric.name))},
                     {"label", metric.label},
-                    {"group", GroupTitle(metric.group)},
+                    {"group", metrics::GroupTitle(metric.group)},
                     {"unit", metric.unit},
                     {"decimals", metric.decimals}});
   return list;
 }
 
-Json PaperJson(const ArmMetrics& arm, std::size_t metric) {
-  const PaperCell cell = MakePaperCell(PaperClaims(), arm, metric);
+Json PaperJson(const metrics::ArmMetrics& arm, std::size_t metric) {
+  const tables::PaperCell cell = tables::MakePaperCell(paper::PaperClaims(), arm, metric);
   if (!cell.value) return nullptr;
   return {{"value", cell.value->value},
           {"text", (cell.value->approximate ? "~" : "") + cell.value->printed},
@@ -52,28 +52,28 @@ Json PaperJson(const ArmMetrics& arm, std::size_t metric) {
 
 Json ArmJson(const PageDataInputs& inputs, std::size_t a) {
   const Json& drawn = inputs.figures.at("arms").at(a);
-  const ArmMetrics& metrics = inputs.report.told[a];
+  const metrics::ArmMetrics& metrics = inputs.report.told[a];
   Json json = Json::object();
   for (const char* key : {"key", "stage", "name", "label", "warmup", "strategy", "eta_min_pct", "missions",
                           "failed", "missing", "networks", "convergence", "world"})
     json[key] = drawn.at(key);
-  json["stored_name"] = metrics.stage + '/' + ArmId{metrics.name, inputs.missions.variant}.Text();
+  json["stored_name"] = metrics.stage + '/' + sweep::ArmId{metrics.name, inputs.missions.variant}.Text();
   json["paper"] = Json::object();
   for (std::size_t m = 0; m < metrics.values.size(); ++m)
     if (Json paper = PaperJson(metrics, m); !paper.is_null())
-      json["paper"][std::string(MetricDefinitions()[m].name)] = std::move(paper);
+      json["paper"][std::string(metrics::MetricDefinitions()[m].name)] = std::move(paper);
   return json;
 }
 
-Json ClaimJson(const JudgedClaim& judged) {
-  const Claim& claim = judged.claim;
-  const Judgement& all = judged.all;
+Json ClaimJson(const claims::JudgedClaim& judged) {
+  const paper::Claim& claim = judged.claim;
+  const claims::Judgement& all = judged.all;
   Json json = {{"id", claim.id},
                {"where", claim.where},
                {"arms", claim.strategy},
                {"metric", claim.metric},
                {"kind", claim.kind},
-               {"claim", ClaimInWords(claim, kClaimWords)},
+               {"claim", claims::ClaimInWords(claim, kClaimWords)},
                {"words", claim.exact_words},
                {"paper", Number(all.paper)},
                {"ours", Number(all.ours)},
@@ -82,39 +82,40 @@ Json ClaimJson(const JudgedClaim& judged) {
                {"p", Number(all.p_holm)},
                {"p_against", Number(all.p_against_holm)},
                {"verdict", NameOf(all.verdict)},
-               {"told", NameWithLuck(judged)},
+               {"told", claims::NameWithLuck(judged)},
                {"repeats", judged.repeats},
                {"why", all.why}};
   if (judged.asks_networks && !judged.by_network.empty()) {
-    const auto same = std::count_if(judged.by_network.begin(), judged.by_network.end(),
-                                    [&](const Judgement& alone) { return alone.verdict == all.verdict; });
+    const auto same =
+        std::count_if(judged.by_network.begin(), judged.by_network.end(),
+                      [&](const claims::Judgement& alone) { return alone.verdict == all.verdict; });
     json["networks"] = {same, judged.by_network.size()};
   }
   return json;
 }
 
-Json ClaimsJson(const ClaimStudy& study) {
+Json ClaimsJson(const claims::ClaimStudy& study) {
   Json json = {{"scenarios", study.scenarios},
                {"networks", study.networks},
                {"counts", Json::array()},
                {"list", Json::array()}};
   if (!study.HasArms()) return json;
-  for (const auto& [verdict, count] : CountVerdicts(study))
-    json["counts"].push_back({NameOf(verdict), count, Holds(verdict)});
-  for (const JudgedClaim& judged : study.claims) json["list"].push_back(ClaimJson(judged));
+  for (const auto& [verdict, count] : claims::CountVerdicts(study))
+    json["counts"].push_back({NameOf(verdict), count, claims::Holds(verdict)});
+  for (const claims::JudgedClaim& judged : study.claims) json["list"].push_back(ClaimJson(judged));
   return json;
 }
 
-Json TableJson(const StudyTable& table) {
+Json TableJson(const tables::StudyTable& table) {
   Json json = {{"id", table.id},           {"title", table.title},  {"arms_down", table.arms_down},
                {"labels", table.labels},   {"arms", Json::array()}, {"missions", Json::array()},
                {"metrics", table.metrics}, {"cells", Json::array()}};
-  for (const ArmMetrics& arm : table.arms) {
+  for (const metrics::ArmMetrics& arm : table.arms) {
     json["arms"].push_back(arm.name);
     json["missions"].push_back(arm.missions);
     Json row = Json::array();
     for (const std::size_t m : table.metrics) {
-      const MetricValue& value = arm.values[m];
+      const metrics::MetricValue& value = arm.values[m];
       row.push_back({Number(value.value), Number(value.lo), Number(value.hi), PaperJson(arm, m)});
     }
     json["cells"].push_back(std::move(row));
@@ -123,10 +124,10 @@ Json TableJson(const StudyTable& table) {
 }
 
 // Sites that the warm-up of any arm had seen.
-Json KnownSites(std::span<const ArmData> arms) {
+Json KnownSites(std::span<const metrics::ArmData> arms) {
   std::set<std::int64_t> known;
-  for (const ArmData& arm : arms)
-    for (const MissionRecord& mission : arm.missions)
+  for (const metrics::ArmData& arm : arms)
+    for (const mission::MissionRecord& mission : arm.missions)
       if (mission.site_known != 0) known.insert(mission.site);
   return known;
 }
@@ -147,25 +148,27 @@ Json RunJson(const PageDataInputs& inputs) {
   return json;
 }
 
-const ArmData* Find(std::span<const ArmData> arms, const ArmMetrics& wanted) {
-  for (const ArmData& arm : arms)
+const metrics::ArmData* Find(std::span<const metrics::ArmData> arms, const metrics::ArmMetrics& wanted) {
+  for (const metrics::ArmData& arm : arms)
     if (arm.stage == wanted.stage && arm.name == wanted.name) return &arm;
   return nullptr;
 }
 
 // A mission that came in since the run was loaded is left out.
-std::vector<int> NumbersOf(ResultReader& reader, const std::string& stored_name, const ArmData& arm) {
+std::vector<int> NumbersOf(store::ResultReader& reader, const std::string& stored_name,
+                           const metrics::ArmData& arm) {
   std::map<std::int64_t, int> by_scenario;
-  const RunLayout& layout = reader.Layout();
+  const store::RunLayout& layout = reader.Layout();
   for (std::size_t s = 0; s < layout.stages.size(); ++s)
     for (std::size_t a = 0; a < layout.stages[s].arms.size(); ++a)
       if (layout.stages[s].missions > 0 && layout.stages[s].name == arm.stage &&
           layout.stages[s].arms[a].name == stored_name)
-        reader.ForEachMission(
-            static_cast<int>(s), static_cast<int>(a), Steps::kSkip,
-            [&](const StoredMission& mission) { by_scenario[mission.record.scenario] = mission.id.mission; });
+        reader.ForEachMission(static_cast<int>(s), static_cast<int>(a), store::Steps::kSkip,
+                              [&](const store::StoredMission& mission) {
+                                by_scenario[mission.record.scenario] = mission.id.mission;
+                              });
   std::vector<int> numbers;
-  for (const MissionRecord& mission : arm.missions) {
+  for (const mission::MissionRecord& mission : arm.missions) {
     const auto found = by_scenario.find(mission.scenario);
     ED3R_CHECK(found != by_scenario.end(), "a stored mission stays stored");
     numbers.push_back(found->second);
@@ -176,15 +179,15 @@ std::vector<int> NumbersOf(ResultReader& reader, const std::string& stored_name,
 }  // namespace
 
 PageMissions ReadPageMissions(const Report& report, const RunResults& results, const std::string& dir) {
-  ResultReader reader(dir);
+  store::ResultReader reader(dir);
   PageMissions page;
   page.variant = report.Variant();
-  const std::vector<ArmData> arms = ArmsOfVariant(results.arms, page.variant);
-  for (const ArmMetrics& told : report.told) {
-    const ArmData* arm = Find(arms, told);
+  const std::vector<metrics::ArmData> arms = variants::ArmsOfVariant(results.arms, page.variant);
+  for (const metrics::ArmMetrics& told : report.told) {
+    const metrics::ArmData* arm = Find(arms, told);
     ED3R_CHECK(arm != nullptr, "the missions of an arm that is told");
     page.arms.push_back(*arm);
-    page.numbers.push_back(NumbersOf(reader, ArmId{arm->name, page.variant}.Text(), *arm));
+    page.numbers.push_back(NumbersOf(reader, sweep::ArmId{arm->name, page.variant}.Text(), *arm));
   }
   return page;
 }
@@ -206,7 +209,7 @@ Json MakePageData(const PageDataInputs& inputs) {
   data["broken"] = inputs.broken;
   data["claims"] = ClaimsJson(report.claims);
   data["tables"] = Json::array();
-  for (const StudyTable& table : report.tables) data["tables"].push_back(TableJson(table));
+  for (const tables::StudyTable& table : report.tables) data["tables"].push_back(TableJson(table));
   for (const char* part : {"world", "world_note", "missions_shown", "variants", "figures"})
     data[part] = inputs.figures.at(part);
   data["run"] = RunJson(inputs);
@@ -215,4 +218,4 @@ Json MakePageData(const PageDataInputs& inputs) {
   return data;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::report

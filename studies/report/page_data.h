@@ -9,10 +9,10 @@
 #include "studies/report/provenance.h"
 #include "studies/report/report.h"
 
-namespace ed3r {
+namespace ed3r::report {
 
 struct PageMissions {
-  std::vector<ArmData> arms;              // those that the report tells, in its order
+  std::vector<metrics::ArmData> arms;     // those that the report tells, in its order
   std::vector<std::vector<int>> numbers;  // of their missions, for `ed3r replay`
   std::string variant;                    // that the store has these arms under; mostly ""
 };
@@ -40,4 +40,4 @@ struct PageDataInputs {
 // "viewers", "viewers_note"}; parts as in page_slices.h and figure_data.h. Pure.
 nlohmann::ordered_json MakePageData(const PageDataInputs& inputs);
 
-}  // namespace ed3r
+}  // namespace ed3r::report

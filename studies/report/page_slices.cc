@@ -10,7 +10,7 @@
 #include "engine/core/check.h"
 #include "studies/figures/mission_columns.h"
 
-namespace ed3r {
+namespace ed3r::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -20,55 +20,56 @@ constexpr int kBins = 50;
 
 Json Exact(double value) { return std::isnan(value) ? Json(nullptr) : Json(value); }
 
-Json Row(const ArmMetrics& metrics, bool whole) {
+Json Row(const metrics::ArmMetrics& metrics, bool whole) {
   if (metrics.missions == 0) return nullptr;
   Json row = {metrics.missions};
   for (std::size_t m = 0; m < metrics.values.size(); ++m) {
-    const MetricValue& value = metrics.values[m];
-    const bool relative = MetricDefinitions()[m].estimate == Estimate::kLookForward;
+    const metrics::MetricValue& value = metrics.values[m];
+    const bool relative = metrics::MetricDefinitions()[m].estimate == metrics::Estimate::kLookForward;
     for (const double number : {value.value, value.lo, value.hi})
-      row.push_back(whole ? Exact(number) : relative ? Json(nullptr) : Rounded(number));
+      row.push_back(whole ? Exact(number) : relative ? Json(nullptr) : figures::Rounded(number));
   }
   return row;
 }
 
-std::set<std::int64_t> SitesOf(std::span<const ArmData> arms) {
+std::set<std::int64_t> SitesOf(std::span<const metrics::ArmData> arms) {
   std::set<std::int64_t> sites;
-  for (const ArmData& arm : arms)
-    for (const MissionRecord& mission : arm.missions) sites.insert(mission.site);
+  for (const metrics::ArmData& arm : arms)
+    for (const mission::MissionRecord& mission : arm.missions) sites.insert(mission.site);
   return sites;
 }
 
 template <class Wanted>
-Json Slice(std::span<const ArmData> arms, const Wanted& wanted) {
+Json Slice(std::span<const metrics::ArmData> arms, const Wanted& wanted) {
   Json rows = Json::array();
-  for (const ArmData& arm : arms) {
-    ArmData part{arm.stage, arm.name, {}};
+  for (const metrics::ArmData& arm : arms) {
+    metrics::ArmData part{arm.stage, arm.name, {}};
     std::copy_if(arm.missions.begin(), arm.missions.end(), std::back_inserter(part.missions), wanted);
-    rows.push_back(part.missions.empty() ? Json(nullptr) : Row(ComputeMetrics(part), /*whole=*/false));
+    rows.push_back(part.missions.empty() ? Json(nullptr)
+                                         : Row(metrics::ComputeMetrics(part), /*whole=*/false));
   }
   return rows;
 }
 
 template <class Place>
-void AddPlace(std::span<const ArmData> arms, const std::string& name, bool outcomes, const Place& there,
-              Json& slices) {
+void AddPlace(std::span<const metrics::ArmData> arms, const std::string& name, bool outcomes,
+              const Place& there, Json& slices) {
   if (name != "all") slices[name + "|all"] = Slice(arms, there);
   for (std::int64_t outcome = 0; outcomes && outcome < 3; ++outcome)
     slices[name + '|' + std::to_string(outcome)] =
-        Slice(arms, [&](const MissionRecord& m) { return there(m) && m.outcome == outcome; });
+        Slice(arms, [&](const mission::MissionRecord& m) { return there(m) && m.outcome == outcome; });
 }
 
-double EnergyKj(const MissionRecord& m) { return m.total_j / 1000; }
-double DurationMin(const MissionRecord& m) { return m.duration_s / 60; }
-double ScsPct(const MissionRecord& m) {
+double EnergyKj(const mission::MissionRecord& m) { return m.total_j / 1000; }
+double DurationMin(const mission::MissionRecord& m) { return m.duration_s / 60; }
+double ScsPct(const mission::MissionRecord& m) {
   return m.reliable_timesteps > 0 ? 100 * m.reliable_scs_sum / static_cast<double>(m.reliable_timesteps)
                                   : kNone;
 }
 
 struct Scale {
   const char *column, *label, *unit;
-  double (*value)(const MissionRecord&);
+  double (*value)(const mission::MissionRecord&);
   bool from_zero;
 };
 constexpr Scale kScales[] = {{"energy_kj", "energy", "kJ", EnergyKj, true},
@@ -82,10 +83,10 @@ struct Range {
   }
 };
 
-Range RangeOf(std::span<const ArmData> arms, const Scale& scale) {
+Range RangeOf(std::span<const metrics::ArmData> arms, const Scale& scale) {
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-  for (const ArmData& arm : arms)
-    for (const MissionRecord& mission : arm.missions)
+  for (const metrics::ArmData& arm : arms)
+    for (const mission::MissionRecord& mission : arm.missions)
       if (const double value = scale.value(mission); !std::isnan(value))
         lo = std::min(lo, value), hi = std::max(hi, value);
   if (hi < lo) return {};
@@ -94,8 +95,8 @@ Range RangeOf(std::span<const ArmData> arms, const Scale& scale) {
   return {from, width / kBins};
 }
 
-const char* CauseOf(const MissionRecord& mission) {
-  if (mission.outcome == static_cast<std::int64_t>(Outcome::kFalsePositive))
+const char* CauseOf(const mission::MissionRecord& mission) {
+  if (mission.outcome == static_cast<std::int64_t>(mission::Outcome::kFalsePositive))
     return "false alarm: fire and smoke alone would not have made its last looks reliable";
   return mission.reliable_timesteps == 0 ? "battery empty without one reliable look"
                                          : "battery empty, some reliable looks but never enough in a row";
@@ -103,27 +104,27 @@ const char* CauseOf(const MissionRecord& mission) {
 
 }  // namespace
 
-Json SlicesJson(std::span<const ArmData> arms, std::span<const ArmMetrics> metrics) {
+Json SlicesJson(std::span<const metrics::ArmData> arms, std::span<const metrics::ArmMetrics> metrics) {
   ED3R_CHECK(arms.size() == metrics.size(), "metrics of every arm");
   Json slices = Json::object();
   Json& whole = slices["all|all"] = Json::array();
-  for (const ArmMetrics& arm : metrics) whole.push_back(Row(arm, /*whole=*/true));
+  for (const metrics::ArmMetrics& arm : metrics) whole.push_back(Row(arm, /*whole=*/true));
   const auto known = [](bool wanted) {
-    return [wanted](const MissionRecord& m) { return (m.site_known != 0) == wanted; };
+    return [wanted](const mission::MissionRecord& m) { return (m.site_known != 0) == wanted; };
   };
   AddPlace(
-      arms, "all", true, [](const MissionRecord&) { return true; }, slices);
+      arms, "all", true, [](const mission::MissionRecord&) { return true; }, slices);
   AddPlace(arms, "known", true, known(true), slices);
   AddPlace(arms, "unseen", true, known(false), slices);
   const std::set<std::int64_t> sites = SitesOf(arms);
   for (const std::int64_t site : sites)
     AddPlace(
         arms, std::to_string(site), sites.size() <= kMostSites,
-        [&](const MissionRecord& m) { return m.site == site; }, slices);
+        [&](const mission::MissionRecord& m) { return m.site == site; }, slices);
   return slices;
 }
 
-Json HistogramsJson(std::span<const ArmData> arms) {
+Json HistogramsJson(std::span<const metrics::ArmData> arms) {
   Json json = {{"scales", Json::array()}, {"cells", Json::array()}};
   for (std::size_t s = 0; s < std::size(kScales); ++s) {
     const Scale& scale = kScales[s];
@@ -136,7 +137,7 @@ Json HistogramsJson(std::span<const ArmData> arms) {
                               {"bins", kBins}});
     for (std::size_t a = 0; a < arms.size(); ++a) {
       std::map<std::pair<std::int64_t, std::int64_t>, std::array<int, kBins>> cells;
-      for (const MissionRecord& mission : arms[a].missions)
+      for (const mission::MissionRecord& mission : arms[a].missions)
         if (const double value = scale.value(mission); !std::isnan(value))
           ++cells[{mission.site, mission.outcome}][static_cast<std::size_t>(range.BinOf(value))];
       for (const auto& [place, counts] : cells) {
@@ -152,10 +153,10 @@ Json HistogramsJson(std::span<const ArmData> arms) {
   return json;
 }
 
-Json PointsJson(std::span<const ArmData> arms, std::span<const std::vector<int>> numbers) {
+Json PointsJson(std::span<const metrics::ArmData> arms, std::span<const std::vector<int>> numbers) {
   Json json = Json::array();
   for (std::size_t a = 0; a < arms.size(); ++a) {
-    const std::vector<MissionRecord>& missions = arms[a].missions;
+    const std::vector<mission::MissionRecord>& missions = arms[a].missions;
     ED3R_CHECK(numbers[a].size() == missions.size(), "a number for every mission");
     const int last = missions.empty() ? 0 : numbers[a].back();
     const int every = last / kMostPoints + 1;
@@ -165,28 +166,28 @@ Json PointsJson(std::span<const ArmData> arms, std::span<const std::vector<int>>
       columns[column] = Json::array();
     for (std::size_t i = 0; i < missions.size(); ++i) {
       if (numbers[a][i] % every != 0) continue;
-      const MissionRecord& mission = missions[i];
+      const mission::MissionRecord& mission = missions[i];
       columns["number"].push_back(numbers[a][i]);
       columns["site"].push_back(mission.site);
       columns["outcome"].push_back(mission.outcome);
       columns["network"].push_back(mission.network);
-      columns["energy_kj"].push_back(Rounded(EnergyKj(mission), 2));
-      columns["duration_min"].push_back(Rounded(DurationMin(mission), 2));
-      columns["scs_pct"].push_back(Rounded(ScsPct(mission), 1));
+      columns["energy_kj"].push_back(figures::Rounded(EnergyKj(mission), 2));
+      columns["duration_min"].push_back(figures::Rounded(DurationMin(mission), 2));
+      columns["scs_pct"].push_back(figures::Rounded(ScsPct(mission), 1));
     }
     json.push_back(std::move(columns));
   }
   return json;
 }
 
-Json FailuresJson(std::span<const ArmData> arms, std::span<const std::vector<int>> numbers) {
+Json FailuresJson(std::span<const metrics::ArmData> arms, std::span<const std::vector<int>> numbers) {
   Json groups = Json::array();
   for (std::size_t a = 0; a < arms.size(); ++a) {
     ED3R_CHECK(numbers[a].size() == arms[a].missions.size(), "a number for every mission");
     std::map<std::string, Json> by_cause;
     for (std::size_t i = 0; i < arms[a].missions.size(); ++i) {
-      const MissionRecord& mission = arms[a].missions[i];
-      if (mission.outcome == static_cast<std::int64_t>(Outcome::kSuccess)) continue;
+      const mission::MissionRecord& mission = arms[a].missions[i];
+      if (mission.outcome == static_cast<std::int64_t>(mission::Outcome::kSuccess)) continue;
       Json& group = by_cause[CauseOf(mission)];
       if (group.is_null())
         group = {{"arm", a},
@@ -196,12 +197,12 @@ Json FailuresJson(std::span<const ArmData> arms, std::span<const std::vector<int
                  {"missions", Json::array()}};
       group["count"] = group["count"].get<int>() + 1;
       if (group["missions"].size() < kMostFailuresListed)
-        group["missions"].push_back(
-            {numbers[a][i], mission.site, Rounded(EnergyKj(mission), 2), Rounded(DurationMin(mission), 2)});
+        group["missions"].push_back({numbers[a][i], mission.site, figures::Rounded(EnergyKj(mission), 2),
+                                     figures::Rounded(DurationMin(mission), 2)});
     }
     for (auto& [cause, group] : by_cause) groups.push_back(std::move(group));
   }
   return groups;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::report

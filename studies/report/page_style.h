@@ -1,7 +1,7 @@
 // The style of index.html: readable on a screen, on a phone and on paper.
 #pragma once
 
-namespace ed3r {
+namespace ed3r::report {
 
 inline constexpr char kPageStyle[] = R"css(
 :root{color-scheme:light;--ink:#1d2327;--faint:#68737b;--line:#d9dee2;--blue:#0b5c92;--green:#0a7a52}
@@ -43,4 +43,4 @@ summary{cursor:pointer;color:var(--blue)}
 @media print{nav,.files{display:none}figure,tr{break-inside:avoid}}
 )css";
 
-}  // namespace ed3r
+}  // namespace ed3r::report

@@ -10,10 +10,10 @@
 #include "engine/store/reader.h"
 #include "engine/store/recipe.h"
 
-namespace ed3r {
+namespace ed3r::report {
 namespace {
 
-bool Flew(const Session& session) { return session.missions > 0; }
+bool Flew(const store::Session& session) { return session.missions > 0; }
 
 std::string Note(const std::map<std::string, std::string>& notes, const std::string& key) {
   const auto found = notes.find(key);
@@ -52,20 +52,21 @@ std::string QuestionOf(const std::map<std::string, std::string>& notes) {
 }  // namespace
 
 Provenance ReadProvenance(const std::string& dir) {
-  ResultReader reader(dir);
+  store::ResultReader reader(dir);
   Provenance provenance;
   provenance.dir = dir;
   provenance.sweep = reader.Layout().name;
   provenance.seed = std::to_string(reader.Layout().seed);
-  provenance.code_version = CodeText(reader.StoredRecipe().code);
-  provenance.mixed_code = MixedCode(reader.StoredRecipe().code);
+  provenance.code_version = store::CodeText(reader.StoredRecipe().code);
+  provenance.mixed_code = store::MixedCode(reader.StoredRecipe().code);
   provenance.inputs = reader.StoredRecipe().inputs;
-  const std::vector<Session> all = reader.Sessions();
+  const std::vector<store::Session> all = reader.Sessions();
   const bool any_flew = std::any_of(all.begin(), all.end(), Flew);
-  for (const Session& session : all)
+  for (const store::Session& session : all)
     if (Flew(session) || !any_flew) {
       provenance.sessions.push_back({session.host, session.begun_utc, session.ended_utc, session.notes});
-      if (session.notes.contains(kProfileNote)) provenance.time_by_phase = Note(session.notes, kProfileNote);
+      if (session.notes.contains(store::kProfileNote))
+        provenance.time_by_phase = Note(session.notes, store::kProfileNote);
     }
   if (!provenance.sessions.empty()) {
     const std::map<std::string, std::string>& notes = provenance.sessions.back().notes;
@@ -74,11 +75,11 @@ Provenance ReadProvenance(const std::string& dir) {
     provenance.question = QuestionOf(notes);
     provenance.commit = Note(notes, "commit");
   }
-  for (const ArmStatus& arm : reader.Status()) {
+  for (const store::ArmStatus& arm : reader.Status()) {
     provenance.planned += arm.planned, provenance.stored += arm.done, provenance.failed += arm.failed;
     provenance.simulated_h += arm.simulated_s / 3600, provenance.wall_h += arm.wall_s / 3600;
   }
-  provenance.digest = DigestOf(reader);
+  provenance.digest = store::DigestOf(reader);
   return provenance;
 }
 
@@ -93,4 +94,4 @@ nlohmann::ordered_json ManifestJson(const Provenance& p) {
           {"wall_h", p.wall_h},     {"inputs", p.inputs},   {"machine", machine}};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::report

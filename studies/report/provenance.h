@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::report {
 
 struct Provenance {
   std::string dir, sweep;
@@ -37,4 +37,4 @@ Provenance ReadProvenance(const std::string& dir);
 // "wall_h", "inputs", "machine": the last session's notes}. Without hosts and times of day.
 nlohmann::ordered_json ManifestJson(const Provenance& provenance);
 
-}  // namespace ed3r
+}  // namespace ed3r::report

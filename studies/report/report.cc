@@ -11,17 +11,17 @@
 #include "studies/tables/data_files.h"
 #include "studies/tables/layout.h"
 
-namespace ed3r {
+namespace ed3r::report {
 namespace {
 
 namespace fs = std::filesystem;
 
-void WriteTable(const StudyTable& table, const fs::path& folder) {
-  const std::vector<Claim>& claims = PaperClaims();
-  WriteFile(folder / (table.id + ".md"), MarkdownTable(table, claims));
-  WriteFile(folder / (table.id + ".tex"), LatexTable(table, claims));
-  WriteFile(folder / (table.id + ".csv"), CsvTable(table, claims));
-  WriteFile(folder / (table.id + ".json"), JsonTable(table, claims).dump(2) + '\n');
+void WriteTable(const tables::StudyTable& table, const fs::path& folder) {
+  const std::vector<paper::Claim>& claims = paper::PaperClaims();
+  WriteFile(folder / (table.id + ".md"), tables::MarkdownTable(table, claims));
+  WriteFile(folder / (table.id + ".tex"), tables::LatexTable(table, claims));
+  WriteFile(folder / (table.id + ".csv"), tables::CsvTable(table, claims));
+  WriteFile(folder / (table.id + ".json"), tables::JsonTable(table, claims).dump(2) + '\n');
 }
 
 // Whether nothing that departs keeps the claims of this variant from being judged.
@@ -36,11 +36,12 @@ bool MayJudgeAll(const Report& report) {
                      [&](const auto& entry) { return MayJudge(report, entry.first); });
 }
 
-ClaimStudy ClaimsOf(const Report& report, const std::vector<ArmData>& arms) {
+claims::ClaimStudy ClaimsOf(const Report& report, const std::vector<metrics::ArmData>& arms) {
   if (!report.variants.verdicts.empty()) return report.variants.verdicts.front();
-  if (MayJudge(report, report.Variant())) return JudgeClaims(PaperClaims(), arms);
-  ClaimStudy unjudged;
-  for (const ArmMetrics& arm : report.told) unjudged.networks = std::max(unjudged.networks, arm.networks);
+  if (MayJudge(report, report.Variant())) return claims::JudgeClaims(paper::PaperClaims(), arms);
+  claims::ClaimStudy unjudged;
+  for (const metrics::ArmMetrics& arm : report.told)
+    unjudged.networks = std::max(unjudged.networks, arm.networks);
   return unjudged;
 }
 
@@ -58,24 +59,25 @@ Report MakeReport(const RunResults& results, const RunDepartures& departures, Ju
   report.mixed_code = results.mixed_code;
   report.departures = departures;
   report.judging = judging;
-  report.variants =
-      CompareVariants(results.arms, MayJudgeAll(report) ? Verdicts::kJudged : Verdicts::kLeftOut);
+  report.variants = variants::CompareVariants(
+      results.arms, MayJudgeAll(report) ? variants::Verdicts::kJudged : variants::Verdicts::kLeftOut);
   const bool variants = !report.variants.variants.empty();
-  const std::vector<ArmData> first =
-      variants ? ArmsOfVariant(results.arms, report.variants.variants.front()) : std::vector<ArmData>();
-  const std::vector<ArmData>& arms = variants ? first : results.arms;
-  for (const ArmData& arm : results.arms) report.arms.push_back(ComputeMetrics(arm));
-  std::vector<ArmMetrics> p85;
-  for (const ArmData& arm : arms) {
-    if (variants) report.told.push_back(ComputeMetrics(arm));
-    report.generalisation.push_back(ComputeGeneralisation(arm));
-    p85.push_back(ComputeP85(arm));
+  const std::vector<metrics::ArmData> first =
+      variants ? variants::ArmsOfVariant(results.arms, report.variants.variants.front())
+               : std::vector<metrics::ArmData>();
+  const std::vector<metrics::ArmData>& arms = variants ? first : results.arms;
+  for (const metrics::ArmData& arm : results.arms) report.arms.push_back(metrics::ComputeMetrics(arm));
+  std::vector<metrics::ArmMetrics> p85;
+  for (const metrics::ArmData& arm : arms) {
+    if (variants) report.told.push_back(metrics::ComputeMetrics(arm));
+    report.generalisation.push_back(tables::ComputeGeneralisation(arm));
+    p85.push_back(metrics::ComputeP85(arm));
   }
   if (!variants) report.told = report.arms;
   report.claims = ClaimsOf(report, arms);
-  report.convergence = Convergence(arms);
-  report.look_forward = LookForwardOf(arms);
-  report.tables = MakeStudyTables(report.told, p85);
+  report.convergence = claims::Convergence(arms);
+  report.look_forward = tables::LookForwardOf(arms);
+  report.tables = tables::MakeStudyTables(report.told, p85);
   return report;
 }
 
@@ -86,18 +88,19 @@ std::string ReportText(const Report& report) {
   if (report.claims.networks > 1)
     text += fmt::format(", {} trained networks of each kind", report.claims.networks);
   text += '\n';
-  for (const std::string& note : report.DepartureNotes()) text += Wrap(note, "", kTerminalWidth);
+  for (const std::string& note : report.DepartureNotes())
+    text += tables::Wrap(note, "", tables::kTerminalWidth);
   text += '\n';
   if (!report.variants.variants.empty())
     text += fmt::format("Variant '{}':\n\n", report.variants.variants.front());
-  text += ResultTable(report.told, PaperClaims());
-  const std::string generalisation = GeneralisationTable(report.generalisation);
+  text += tables::ResultTable(report.told, paper::PaperClaims());
+  const std::string generalisation = tables::GeneralisationTable(report.generalisation);
   if (!generalisation.empty()) text += '\n' + generalisation;
-  const std::string look_forward = LookForwardText(report.look_forward);
+  const std::string look_forward = tables::LookForwardText(report.look_forward);
   if (!look_forward.empty()) text += '\n' + look_forward;
-  const std::string verdicts = VerdictText(report.claims);
+  const std::string verdicts = claims::VerdictText(report.claims);
   if (!verdicts.empty()) text += '\n' + verdicts;
-  const std::string variants = VariantText(report.variants);
+  const std::string variants = variants::VariantText(report.variants);
   return variants.empty() ? text : text + '\n' + variants;
 }
 
@@ -107,10 +110,10 @@ nlohmann::ordered_json ReportJson(const Report& report) {
   const auto departures = report.departures.find(report.Variant());
   json["paper"] = DeparturesJson(departures == report.departures.end() ? Departures() : departures->second,
                                  report.judging);
-  json.update(ResultJson(report.arms, PaperClaims()));
-  json["generalisation"] = GeneralisationJson(report.generalisation);
-  json["look_forward"] = LookForwardJson(report.look_forward);
-  json["claims"] = VerdictJson(report.claims);
+  json.update(tables::ResultJson(report.arms, paper::PaperClaims()));
+  json["generalisation"] = tables::GeneralisationJson(report.generalisation);
+  json["look_forward"] = tables::LookForwardJson(report.look_forward);
+  json["claims"] = claims::VerdictJson(report.claims);
   return json;
 }
 
@@ -119,17 +122,17 @@ void WriteReport(const Report& report, const std::string& dir) {
   MakeFolder(base / "tables");
   WriteFile(base / "report.txt", ReportText(report));
   WriteFile(base / "report.json", ReportJson(report).dump(2) + '\n');
-  WriteFile(base / "metrics.csv", ResultCsv(report.arms, PaperClaims()));
-  WriteFile(base / "generalisation.csv", GeneralisationCsv(report.generalisation));
-  WriteFile(base / "verdicts.csv", VerdictCsv(report.claims));
-  if (report.claims.networks > 1) WriteFile(base / "by_network.csv", ByNetworkCsv(report.claims));
-  WriteFile(base / "convergence.csv", ConvergenceCsv(report.convergence));
-  WriteFile(base / "look_forward.csv", LookForwardCsv(report.look_forward));
+  WriteFile(base / "metrics.csv", tables::ResultCsv(report.arms, paper::PaperClaims()));
+  WriteFile(base / "generalisation.csv", tables::GeneralisationCsv(report.generalisation));
+  WriteFile(base / "verdicts.csv", claims::VerdictCsv(report.claims));
+  if (report.claims.networks > 1) WriteFile(base / "by_network.csv", claims::ByNetworkCsv(report.claims));
+  WriteFile(base / "convergence.csv", claims::ConvergenceCsv(report.convergence));
+  WriteFile(base / "look_forward.csv", tables::LookForwardCsv(report.look_forward));
   if (!report.variants.variants.empty()) {
-    WriteFile(base / "variants.csv", DifferenceCsv(report.variants));
-    WriteFile(base / "variant_verdicts.csv", VariantVerdictCsv(report.variants));
+    WriteFile(base / "variants.csv", variants::DifferenceCsv(report.variants));
+    WriteFile(base / "variant_verdicts.csv", variants::VariantVerdictCsv(report.variants));
   }
-  for (const StudyTable& table : report.tables) WriteTable(table, base / "tables");
+  for (const tables::StudyTable& table : report.tables) WriteTable(table, base / "tables");
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::report

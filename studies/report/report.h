@@ -16,12 +16,12 @@
 #include "studies/tables/study_table.h"
 #include "studies/variants/variants.h"
 
-namespace ed3r {
+namespace ed3r::report {
 
 // What a run holds.
 struct RunResults {
   std::string name;  // of the sweep
-  std::vector<ArmData> arms;
+  std::vector<metrics::ArmData> arms;
   // The identities of the code, where several versions of it flew the run (CodeText); "" where one did.
   std::string mixed_code = {};
 };
@@ -31,15 +31,15 @@ struct Report {
   std::string mixed_code;  // as in RunResults
   RunDepartures departures;
   Judging judging = Judging::kWhatThePaperFlew;
-  std::vector<ArmMetrics> arms;
+  std::vector<metrics::ArmMetrics> arms;
   // What tables and verdicts tell: all arms, or those of the first variant where the study has variants.
-  std::vector<ArmMetrics> told;
-  std::vector<Generalisation> generalisation;  // one per arm told
-  std::vector<StudyTable> tables;              // for papers and pages
-  ClaimStudy claims;                           // without any where what is told departs from the paper
-  VariantStudy variants;
-  std::vector<ConvergencePoint> convergence;  // of the arms told
-  std::vector<LookForward> look_forward;      // of the arms told that ask a network
+  std::vector<metrics::ArmMetrics> told;
+  std::vector<tables::Generalisation> generalisation;  // one per arm told
+  std::vector<tables::StudyTable> tables;              // for papers and pages
+  claims::ClaimStudy claims;  // without any where what is told departs from the paper
+  variants::VariantStudy variants;
+  std::vector<claims::ConvergencePoint> convergence;  // of the arms told
+  std::vector<tables::LookForward> look_forward;      // of the arms told that ask a network
 
   std::string Variant() const;                      // that is told; "" without variants
   std::vector<std::string> DepartureNotes() const;  // for its head
@@ -62,4 +62,4 @@ nlohmann::ordered_json ReportJson(const Report& report);
 // if it has to; each file is replaced whole or left as it was. Throws UserError when it cannot.
 void WriteReport(const Report& report, const std::string& dir);
 
-}  // namespace ed3r
+}  // namespace ed3r::report

@@ -15,7 +15,7 @@
 #include "studies/report/provenance.h"
 #include "studies/report/web_page.h"
 
-namespace ed3r {
+namespace ed3r::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,26 +24,27 @@ constexpr const char* kManifest = "manifest.json";
 
 // Of a sweep with variants: of its first one.
 nlohmann::ordered_json FigureData(const Report& report, const RunResults& results, const std::string& dir) {
-  ResultReader reader(dir);
+  store::ResultReader reader(dir);
   const std::string variant = report.Variant();
-  std::vector<ArmPlan> plans = ReadArmPlans(reader.StoredRecipe().plan_text);
-  std::erase_if(plans, [&](const ArmPlan& plan) { return ArmId::Of(plan.name).variant != variant; });
-  std::vector<ShownMission> missions = PickMissions(reader, plans);
-  FoundScene found;
-  for (const ArmPlan& plan : plans)
+  std::vector<figures::ArmPlan> plans = figures::ReadArmPlans(reader.StoredRecipe().plan_text);
+  std::erase_if(plans,
+                [&](const figures::ArmPlan& plan) { return sweep::ArmId::Of(plan.name).variant != variant; });
+  std::vector<figures::ShownMission> missions = figures::PickMissions(reader, plans);
+  figures::FoundScene found;
+  for (const figures::ArmPlan& plan : plans)
     if (!missions.empty() && plan.stage == missions.front().stage && plan.name == missions.front().arm)
-      found = FindScene(reader, plan.Setting("mission.world"));
-  for (ArmPlan& plan : plans) plan.name = ArmId::Of(plan.name).name;
-  for (ShownMission& mission : missions) mission.arm = ArmId::Of(mission.arm).name;
-  const std::vector<ArmData> arms = ArmsOfVariant(results.arms, variant);
-  return MakeFigureData({.name = results.name,
-                         .arms = arms,
-                         .metrics = report.told,
-                         .plans = plans,
-                         .missions = missions,
-                         .scene = found.scene,
-                         .scene_note = found.why_not,
-                         .variants = &report.variants});
+      found = figures::FindScene(reader, plan.Setting("mission.world"));
+  for (figures::ArmPlan& plan : plans) plan.name = sweep::ArmId::Of(plan.name).name;
+  for (figures::ShownMission& mission : missions) mission.arm = sweep::ArmId::Of(mission.arm).name;
+  const std::vector<metrics::ArmData> arms = variants::ArmsOfVariant(results.arms, variant);
+  return figures::MakeFigureData({.name = results.name,
+                                  .arms = arms,
+                                  .metrics = report.told,
+                                  .plans = plans,
+                                  .missions = missions,
+                                  .scene = found.scene,
+                                  .scene_note = found.why_not,
+                                  .variants = &report.variants});
 }
 
 // Titles and captions for whoever meets the pictures without index.html.
@@ -102,10 +103,11 @@ void RemoveOldPictures(const fs::path& folder) {
 }
 
 // Missions that threw inside the program, with their own words.
-nlohmann::ordered_json BrokenMissions(ResultReader& reader) {
+nlohmann::ordered_json BrokenMissions(store::ResultReader& reader) {
   nlohmann::ordered_json broken = nlohmann::ordered_json::array();
-  for (const FailedMission& failure : reader.Failures()) {
-    const RunLayout::Stage& stage = reader.Layout().stages.at(static_cast<std::size_t>(failure.id.stage));
+  for (const store::FailedMission& failure : reader.Failures()) {
+    const store::RunLayout::Stage& stage =
+        reader.Layout().stages.at(static_cast<std::size_t>(failure.id.stage));
     broken.push_back({{"mission", fmt::format("{}/{}/{}", stage.name,
                                               stage.arms.at(static_cast<std::size_t>(failure.id.arm)).name,
                                               failure.id.mission)},
@@ -116,7 +118,7 @@ nlohmann::ordered_json BrokenMissions(ResultReader& reader) {
 
 std::string InteractivePage(const WebBundle& bundle, const PageInputs& plain, const RunResults& results,
                             const nlohmann::ordered_json& figures, const FolderOptions& options) {
-  ResultReader reader(options.dir);
+  store::ResultReader reader(options.dir);
   const PageMissions missions = ReadPageMissions(plain.report, results, options.dir);
   const nlohmann::ordered_json data = MakePageData({.report = plain.report,
                                                     .provenance = plain.provenance,
@@ -151,9 +153,10 @@ FolderResult WriteReportFolder(const Report& report, const RunResults& results,
   FolderResult result;
   if (!options.figures) {
     result.note = "figures not drawn (--no-figures)";
-  } else if (const DrawResult drawing = DrawFigures(figures.string()); drawing.outcome == Drawing::kFailed) {
+  } else if (const figures::DrawResult drawing = figures::DrawFigures(figures.string());
+             drawing.outcome == figures::Drawing::kFailed) {
     result.plot_error = drawing.message;
-  } else if (drawing.outcome == Drawing::kUnavailable) {
+  } else if (drawing.outcome == figures::Drawing::kUnavailable) {
     result.note = "figures not drawn: " + drawing.message;
   }
   nlohmann::ordered_json drawn = nlohmann::ordered_json::array();
@@ -170,4 +173,4 @@ FolderResult WriteReportFolder(const Report& report, const RunResults& results,
   return result;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::report

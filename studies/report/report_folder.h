@@ -5,7 +5,7 @@
 
 #include "studies/report/report.h"
 
-namespace ed3r {
+namespace ed3r::report {
 
 struct FolderOptions {
   std::string dir;      // of the run
@@ -32,4 +32,4 @@ struct FolderResult {
 // be read, the folder not be written, or where it is not empty and no report (without a manifest.json of one).
 FolderResult WriteReportFolder(const Report& report, const RunResults& results, const FolderOptions& options);
 
-}  // namespace ed3r
+}  // namespace ed3r::report

@@ -8,7 +8,7 @@
 #include "engine/core/shipped.h"
 #include "studies/report/page_parts.h"
 
-namespace ed3r {
+namespace ed3r::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -65,4 +65,4 @@ std::string SelfContainedPage(const std::string& title, const WebBundle& bundle,
   return page + "</script>\n</body>\n</html>\n";
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::report

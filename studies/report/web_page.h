@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace ed3r {
+namespace ed3r::report {
 
 // What `scripts/setup --web` makes of studies/report/web/.
 struct WebBundle {
@@ -25,4 +25,4 @@ FoundBundle FindWebBundle(const std::string& name);
 std::string SelfContainedPage(const std::string& title, const WebBundle& bundle,
                               const nlohmann::ordered_json& data, const std::string& plain);
 
-}  // namespace ed3r
+}  // namespace ed3r::report

@@ -5,7 +5,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::statistics {
 
 std::vector<double> HolmAdjust(std::span<const double> p) {
   for (const double value : p) ED3R_CHECK(value >= 0 && value <= 1, "a probability");
@@ -21,4 +21,4 @@ std::vector<double> HolmAdjust(std::span<const double> p) {
   return adjusted;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::statistics

@@ -7,7 +7,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::statistics {
 namespace {
 
 constexpr double kTail = 0.025;
@@ -128,4 +128,4 @@ Interval QuantileInterval(std::span<const double> sorted, int percent) {
   return {sorted[lower - 1], sorted[upper - 1]};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::statistics

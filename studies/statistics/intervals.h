@@ -14,7 +14,7 @@
 #include <limits>
 #include <span>
 
-namespace ed3r {
+namespace ed3r::statistics {
 
 // [lo, hi]; both NaN where the sample cannot give one.
 struct Interval {
@@ -64,4 +64,4 @@ std::int64_t QuantileRank(std::int64_t n, int percent);
 // the sample is too small to have such a pair (fewer than 23 missions for the 85th percentile).
 Interval QuantileInterval(std::span<const double> sorted, int percent);
 
-}  // namespace ed3r
+}  // namespace ed3r::statistics

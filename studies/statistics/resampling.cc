@@ -27,7 +27,7 @@
 #include "engine/core/random.h"
 #include "studies/statistics/intervals.h"
 
-namespace ed3r {
+namespace ed3r::statistics {
 namespace {
 
 constexpr std::uint64_t kSeed = 6;  // any; fixed, so that a report is the same every time
@@ -117,4 +117,4 @@ Sides TestAgainst(const Resampled& number, const Uncertainty& uncertainty, doubl
   return sides;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::statistics

@@ -22,7 +22,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::statistics {
 
 class Resampler {
  public:
@@ -65,4 +65,4 @@ struct Sides {
 };
 Sides TestAgainst(const Resampled& number, const Uncertainty& uncertainty, double threshold);
 
-}  // namespace ed3r
+}  // namespace ed3r::statistics

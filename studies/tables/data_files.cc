@@ -10,25 +10,26 @@
 #include "studies/metrics/number_text.h"
 #include "studies/tables/paper_cell.h"
 
-namespace ed3r {
+namespace ed3r::tables {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json ValueJson(const MetricValue& ours) {
-  return {{"mean", JsonNumber(ours.value)},
-          {"lo", JsonNumber(ours.lo)},
-          {"hi", JsonNumber(ours.hi)},
+Json ValueJson(const metrics::MetricValue& ours) {
+  return {{"mean", metrics::JsonNumber(ours.value)},
+          {"lo", metrics::JsonNumber(ours.lo)},
+          {"hi", metrics::JsonNumber(ours.hi)},
           {"n", ours.n}};
 }
 
-std::string ValueCsv(const MetricValue& ours) {
-  return fmt::format("{},{},{},{}", CsvNumber(ours.value), CsvNumber(ours.lo), CsvNumber(ours.hi), ours.n);
+std::string ValueCsv(const metrics::MetricValue& ours) {
+  return fmt::format("{},{},{},{}", metrics::CsvNumber(ours.value), metrics::CsvNumber(ours.lo),
+                     metrics::CsvNumber(ours.hi), ours.n);
 }
 
 struct Place {
   const char* name;
-  const ArmMetrics Generalisation::*missions;
+  const metrics::ArmMetrics Generalisation::*missions;
 };
 constexpr Place kPlaces[] = {{"known-site", &Generalisation::known_sites},
                              {"unseen-site", &Generalisation::unseen_sites},
@@ -37,20 +38,20 @@ constexpr Place kPlaces[] = {{"known-site", &Generalisation::known_sites},
 
 }  // namespace
 
-std::vector<std::string> UniqueArmNames(std::span<const ArmMetrics> arms) {
+std::vector<std::string> UniqueArmNames(std::span<const metrics::ArmMetrics> arms) {
   std::map<std::string, int> uses;
-  for (const ArmMetrics& arm : arms) ++uses[arm.name];
+  for (const metrics::ArmMetrics& arm : arms) ++uses[arm.name];
   std::vector<std::string> names;
-  for (const ArmMetrics& arm : arms)
+  for (const metrics::ArmMetrics& arm : arms)
     names.push_back(uses[arm.name] == 1 ? arm.name : arm.stage + '/' + arm.name);
   return names;
 }
 
-Json ResultJson(std::span<const ArmMetrics> arms, const std::vector<Claim>& claims) {
+Json ResultJson(std::span<const metrics::ArmMetrics> arms, const std::vector<paper::Claim>& claims) {
   const std::vector<std::string> names = UniqueArmNames(arms);
   Json all = Json::object();
   for (std::size_t a = 0; a < arms.size(); ++a) {
-    const ArmMetrics& arm = arms[a];
+    const metrics::ArmMetrics& arm = arms[a];
     Json& entry = all[names[a]];
     entry = {
         {"stage", arm.stage}, {"missions", arm.missions}, {"failed", arm.failed}, {"missing", arm.missing}};
@@ -58,21 +59,21 @@ Json ResultJson(std::span<const ArmMetrics> arms, const std::vector<Claim>& clai
       Json value = ValueJson(arm.values[i]);
       const PaperCell paper = MakePaperCell(claims, arm, i);
       value["paper"] = paper.value ? Json(paper.value->value) : Json(nullptr);
-      entry[std::string(MetricDefinitions()[i].name)] = value;
+      entry[std::string(metrics::MetricDefinitions()[i].name)] = value;
     }
   }
   return {{"arms", all}};
 }
 
-std::string ResultCsv(std::span<const ArmMetrics> arms, const std::vector<Claim>& claims) {
+std::string ResultCsv(std::span<const metrics::ArmMetrics> arms, const std::vector<paper::Claim>& claims) {
   std::string csv = "stage,arm,metric,value,lo,hi,n,paper\n";
-  for (const ArmMetrics& arm : arms) {
+  for (const metrics::ArmMetrics& arm : arms) {
     const std::string start = CsvField(arm.stage) + ',' + CsvField(arm.name) + ',';
     csv += fmt::format("{0}missions,{1},,,{1},\n{0}failed,{2},,,{1},\n{0}missing,{3},,,{1},\n", start,
                        arm.missions, arm.failed, arm.missing);
     for (std::size_t i = 0; i < arm.values.size(); ++i) {
       const PaperCell paper = MakePaperCell(claims, arm, i);
-      csv += fmt::format("{}{},{},{}\n", start, MetricDefinitions()[i].name, ValueCsv(arm.values[i]),
+      csv += fmt::format("{}{},{},{}\n", start, metrics::MetricDefinitions()[i].name, ValueCsv(arm.values[i]),
                          paper.value ? paper.value->printed : "");
     }
   }
@@ -83,28 +84,28 @@ std::string GeneralisationCsv(std::span<const Generalisation> arms) {
   std::string csv = "stage,arm,place,metric,value,lo,hi,n\n";
   for (const Generalisation& arm : arms)
     for (const Place& place : kPlaces) {
-      const ArmMetrics& missions = arm.*place.missions;
+      const metrics::ArmMetrics& missions = arm.*place.missions;
       for (std::size_t i = 0; i < missions.values.size(); ++i)
         csv += fmt::format("{},{},{},{},{}\n", CsvField(missions.stage), CsvField(missions.name), place.name,
-                           MetricDefinitions()[i].name, ValueCsv(missions.values[i]));
+                           metrics::MetricDefinitions()[i].name, ValueCsv(missions.values[i]));
     }
   return csv;
 }
 
 Json GeneralisationJson(std::span<const Generalisation> arms) {
-  std::vector<ArmMetrics> known;
+  std::vector<metrics::ArmMetrics> known;
   for (const Generalisation& arm : arms) known.push_back(arm.known_sites);
   const std::vector<std::string> names = UniqueArmNames(known);
   Json all = Json::object();
   for (std::size_t a = 0; a < arms.size(); ++a)
     for (const Place& place : kPlaces) {
-      const ArmMetrics& missions = arms[a].*place.missions;
+      const metrics::ArmMetrics& missions = arms[a].*place.missions;
       Json& entry = all[names[a]][place.name];
       entry = {{"missions", missions.missions}};
       for (std::size_t i = 0; i < missions.values.size(); ++i)
-        entry[std::string(MetricDefinitions()[i].name)] = ValueJson(missions.values[i]);
+        entry[std::string(metrics::MetricDefinitions()[i].name)] = ValueJson(missions.values[i]);
     }
   return all;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::tables

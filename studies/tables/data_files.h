@@ -17,16 +17,17 @@
 #include "studies/paper/claims.h"
 #include "studies/tables/result_table.h"
 
-namespace ed3r {
+namespace ed3r::tables {
 
 // Keys of `arms`, in their order: see above.
-std::vector<std::string> UniqueArmNames(std::span<const ArmMetrics> arms);
+std::vector<std::string> UniqueArmNames(std::span<const metrics::ArmMetrics> arms);
 
-nlohmann::ordered_json ResultJson(std::span<const ArmMetrics> arms, const std::vector<Claim>& claims);
+nlohmann::ordered_json ResultJson(std::span<const metrics::ArmMetrics> arms,
+                                  const std::vector<paper::Claim>& claims);
 
 // Columns stage,arm,metric,value,lo,hi,n,paper; the metrics of each arm follow its counts "missions",
 // "failed" and "missing".
-std::string ResultCsv(std::span<const ArmMetrics> arms, const std::vector<Claim>& claims);
+std::string ResultCsv(std::span<const metrics::ArmMetrics> arms, const std::vector<paper::Claim>& claims);
 
 // Columns stage,arm,place,metric,value,lo,hi,n; place is known-site, unseen-site, known-base-station or
 // unseen-base-station.
@@ -35,4 +36,4 @@ std::string GeneralisationCsv(std::span<const Generalisation> arms);
 // {NAME: {PLACE: {"missions", METRIC: {"mean", "lo", "hi", "n"}, ...}}}, names as in ResultJson.
 nlohmann::ordered_json GeneralisationJson(std::span<const Generalisation> arms);
 
-}  // namespace ed3r
+}  // namespace ed3r::tables

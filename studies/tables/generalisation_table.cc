@@ -6,7 +6,7 @@
 
 #include "studies/tables/result_table.h"
 
-namespace ed3r {
+namespace ed3r::tables {
 namespace {
 
 constexpr int kLabelWidth = 26, kCountWidth = 8, kColumnWidth = 20;
@@ -20,7 +20,7 @@ constexpr Column kColumns[] = {{"total_energy_kj", "energy, kJ", 1},
                                {"wer_pct", "WER, %", 1},
                                {"mscs_pct", "MSCS, %", 1}};
 
-std::string CellText(const MetricValue& ours, int decimals) {
+std::string CellText(const metrics::MetricValue& ours, int decimals) {
   const std::string value = Pad(FormatValue(ours.value, decimals), 7, Align::kRight);
   if (std::isnan(ours.lo)) return Pad(value, kColumnWidth, Align::kLeft);
   const std::string interval =
@@ -28,7 +28,7 @@ std::string CellText(const MetricValue& ours, int decimals) {
   return Pad(value + interval, kColumnWidth, Align::kLeft);
 }
 
-std::string Line(std::string_view label, const ArmMetrics& missions) {
+std::string Line(std::string_view label, const metrics::ArmMetrics& missions) {
   std::string line = Pad(fmt::format("  {}", label), kLabelWidth, Align::kLeft) +
                      Pad(std::to_string(missions.missions), kCountWidth, Align::kRight);
   for (const Column& column : kColumns) line += CellText(missions[column.metric], column.decimals);
@@ -41,11 +41,11 @@ bool HasUnseen(const Generalisation& arm) {
 
 }  // namespace
 
-Generalisation ComputeGeneralisation(const ArmData& arm) {
-  const KnownUnseen sites = Split(arm, SplitBy::kSite);
-  const KnownUnseen stations = Split(arm, SplitBy::kBaseStation);
-  return {ComputeMetrics(sites.known), ComputeMetrics(sites.unseen), ComputeMetrics(stations.known),
-          ComputeMetrics(stations.unseen)};
+Generalisation ComputeGeneralisation(const metrics::ArmData& arm) {
+  const metrics::KnownUnseen sites = metrics::Split(arm, metrics::SplitBy::kSite);
+  const metrics::KnownUnseen stations = metrics::Split(arm, metrics::SplitBy::kBaseStation);
+  return {metrics::ComputeMetrics(sites.known), metrics::ComputeMetrics(sites.unseen),
+          metrics::ComputeMetrics(stations.known), metrics::ComputeMetrics(stations.unseen)};
 }
 
 std::string GeneralisationTable(std::span<const Generalisation> arms) {
@@ -65,4 +65,4 @@ std::string GeneralisationTable(std::span<const Generalisation> arms) {
   return TrimLineEnds(table);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::tables

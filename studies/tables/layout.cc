@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace ed3r {
+namespace ed3r::tables {
 
 int DisplayWidth(std::string_view utf8) {
   // Every byte but the continuation bytes (10xxxxxx) starts a character.
@@ -60,4 +60,4 @@ std::string FormatValue(double value, int decimals) {
   return text;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::tables

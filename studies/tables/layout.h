@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace ed3r {
+namespace ed3r::tables {
 
 constexpr int kTerminalWidth = 120;
 
@@ -30,4 +30,4 @@ std::string TrimLineEnds(std::string_view text);
 // ("139.9"); "–" for NaN.
 std::string FormatValue(double value, int decimals);
 
-}  // namespace ed3r
+}  // namespace ed3r::tables

@@ -9,7 +9,7 @@
 #include "studies/tables/layout.h"
 #include "studies/tables/names.h"
 
-namespace ed3r {
+namespace ed3r::tables {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -34,9 +34,9 @@ double MeanPercent(const std::vector<double>& accuracies) {
   return count > 0 ? 100.0 * sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
-LookForward ErrorsOf(const ArmData& arm) {
+LookForward ErrorsOf(const metrics::ArmData& arm) {
   LookForward result{.arm = arm.name};
-  for (const MissionRecord& mission : arm.missions) {
+  for (const mission::MissionRecord& mission : arm.missions) {
     if (mission.predicted_timesteps == 0) continue;
     const double error = mission.absolute_reward_error_sum / static_cast<double>(mission.predicted_timesteps);
     ++result.missions;
@@ -49,14 +49,14 @@ LookForward ErrorsOf(const ArmData& arm) {
 }
 
 // By network.
-WorstErrors WorstTimestepsOf(std::span<const MissionRecord> missions) {
-  WorstErrors worst;
-  for (const MissionRecord& m : missions)
+metrics::WorstErrors WorstTimestepsOf(std::span<const mission::MissionRecord> missions) {
+  metrics::WorstErrors worst;
+  for (const mission::MissionRecord& m : missions)
     if (m.predicted_timesteps > 0) worst[m.network] = std::max(worst[m.network], m.largest_reward_error);
   return worst;
 }
 
-void Widen(const WorstErrors& errors, WorstErrors& worst) {
+void Widen(const metrics::WorstErrors& errors, metrics::WorstErrors& worst) {
   for (const auto& [network, error] : errors) worst[network] = std::max(worst[network], error);
 }
 
@@ -90,24 +90,26 @@ std::string PatternText(const std::vector<LookForward>& arms) {
 
 }  // namespace
 
-std::vector<LookForward> LookForwardOf(std::span<const ArmData> arms) {
-  WorstErrors of_all, of_all_timesteps;
-  for (const ArmData& arm : arms) {
-    Widen(WorstErrorsOf(arm.missions), of_all);
+std::vector<LookForward> LookForwardOf(std::span<const metrics::ArmData> arms) {
+  metrics::WorstErrors of_all, of_all_timesteps;
+  for (const metrics::ArmData& arm : arms) {
+    Widen(metrics::WorstErrorsOf(arm.missions), of_all);
     Widen(WorstTimestepsOf(arm.missions), of_all_timesteps);
   }
   std::vector<LookForward> result;
-  for (const ArmData& arm : arms) {
+  for (const metrics::ArmData& arm : arms) {
     LookForward row = ErrorsOf(arm);
     if (row.missions == 0) continue;
-    const ArmData group = P85Group(arm);
-    const WorstErrors of_arm = WorstErrorsOf(arm.missions), of_group = WorstErrorsOf(group.missions);
-    const WorstErrors of_arm_timesteps = WorstTimestepsOf(arm.missions);
-    const WorstErrors* worst[] = {&of_arm, &of_arm, &of_all, &of_arm_timesteps, &of_all_timesteps};
+    const metrics::ArmData group = metrics::P85Group(arm);
+    const metrics::WorstErrors of_arm = metrics::WorstErrorsOf(arm.missions),
+                               of_group = metrics::WorstErrorsOf(group.missions);
+    const metrics::WorstErrors of_arm_timesteps = WorstTimestepsOf(arm.missions);
+    const metrics::WorstErrors* worst[] = {&of_arm, &of_arm, &of_all, &of_arm_timesteps, &of_all_timesteps};
     for (std::size_t i = 0; i < std::size(kWorstOfs); ++i) {
-      row.accuracy[i] = MeanPercent(LookForwardAccuracies(arm.missions, *worst[i]));
+      row.accuracy[i] = MeanPercent(metrics::LookForwardAccuracies(arm.missions, *worst[i]));
       const bool own = kWorstOfs[i] == WorstOf::kGroup;
-      row.p85_accuracy[i] = MeanPercent(LookForwardAccuracies(group.missions, own ? of_group : *worst[i]));
+      row.p85_accuracy[i] =
+          MeanPercent(metrics::LookForwardAccuracies(group.missions, own ? of_group : *worst[i]));
     }
     result.push_back(std::move(row));
   }
@@ -200,4 +202,4 @@ Json LookForwardJson(const std::vector<LookForward>& arms) {
   return json;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::tables

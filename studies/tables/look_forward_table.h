@@ -11,7 +11,7 @@
 
 #include "studies/metrics/arm.h"
 
-namespace ed3r {
+namespace ed3r::tables {
 
 // The largest error may be the largest mean error of a mission, among the missions averaged over (the P85 group's own), the
 // arm's or all arms'; or the largest error of one timestep, the arm's or all arms'. Always that of the network that flew:
@@ -31,7 +31,7 @@ struct LookForward {
 };
 
 // Arms with predictions alone.
-std::vector<LookForward> LookForwardOf(std::span<const ArmData> arms);
+std::vector<LookForward> LookForwardOf(std::span<const metrics::ArmData> arms);
 
 // What the paper prints: the P85 values of ED3R-75 and ECD2R above their means; every ablation above ED3R-75; ECD2R above
 // ED3R-75. Each part is none where its arms are missing.
@@ -51,4 +51,4 @@ std::string LookForwardCsv(const std::vector<LookForward>& arms);
 // The same rows as objects, none as null, and "pattern" by definition.
 nlohmann::ordered_json LookForwardJson(const std::vector<LookForward>& arms);
 
-}  // namespace ed3r
+}  // namespace ed3r::tables

@@ -2,14 +2,15 @@
 
 #include <cmath>
 
-namespace ed3r {
+namespace ed3r::tables {
 
-PaperCell MakePaperCell(const std::vector<Claim>& claims, const ArmMetrics& arm, std::size_t metric) {
+PaperCell MakePaperCell(const std::vector<paper::Claim>& claims, const metrics::ArmMetrics& arm,
+                        std::size_t metric) {
   PaperCell cell;
-  cell.value = FindPaperValue(claims, arm.name, MetricDefinitions()[metric].name);
+  cell.value = paper::FindPaperValue(claims, arm.name, metrics::MetricDefinitions()[metric].name);
   if (!cell.value) return cell;
-  const PaperValue& paper = *cell.value;
-  const MetricValue& ours = arm.values[metric];
+  const paper::PaperValue& paper = *cell.value;
+  const metrics::MetricValue& ours = arm.values[metric];
   // False for NaN: no interval, no agreement.
   cell.within = ours.lo - paper.half_unit <= paper.value && paper.value <= ours.hi + paper.half_unit;
   cell.text = (paper.approximate ? "~" : "") + paper.printed;
@@ -19,4 +20,4 @@ PaperCell MakePaperCell(const std::vector<Claim>& claims, const ArmMetrics& arm,
   return cell;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::tables

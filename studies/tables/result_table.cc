@@ -8,7 +8,7 @@
 
 #include "studies/tables/paper_cell.h"
 
-namespace ed3r {
+namespace ed3r::tables {
 namespace {
 
 constexpr int kLabelWidth = 24, kUnitWidth = 4;
@@ -22,12 +22,12 @@ struct Cell {
 // A row of the table; a heading has no cells.
 struct Row {
   std::string label, unit;
-  std::function<Cell(const ArmMetrics&)> cell;
+  std::function<Cell(const metrics::ArmMetrics&)> cell;
 };
 
-Cell MetricCell(const ArmMetrics& arm, std::size_t metric, const std::vector<Claim>& claims) {
-  const MetricValue& ours = arm.values[metric];
-  const int decimals = MetricDefinitions()[metric].decimals;
+Cell MetricCell(const metrics::ArmMetrics& arm, std::size_t metric, const std::vector<paper::Claim>& claims) {
+  const metrics::MetricValue& ours = arm.values[metric];
+  const int decimals = metrics::MetricDefinitions()[metric].decimals;
   Cell cell{FormatValue(ours.value, decimals), "", "", ""};
   if (!std::isnan(ours.lo))
     cell.lo = FormatValue(ours.lo, decimals), cell.hi = FormatValue(ours.hi, decimals);
@@ -35,20 +35,20 @@ Cell MetricCell(const ArmMetrics& arm, std::size_t metric, const std::vector<Cla
   return cell;
 }
 
-std::vector<Row> MakeRows(const std::vector<Claim>& claims) {
-  const auto count = [](std::int64_t ArmMetrics::*member) {
-    return [member](const ArmMetrics& arm) { return Cell{std::to_string(arm.*member), "", "", ""}; };
+std::vector<Row> MakeRows(const std::vector<paper::Claim>& claims) {
+  const auto count = [](std::int64_t metrics::ArmMetrics::*member) {
+    return [member](const metrics::ArmMetrics& arm) { return Cell{std::to_string(arm.*member), "", "", ""}; };
   };
   std::vector<Row> rows = {{"Missions", "", nullptr},
-                           {"flown", "", count(&ArmMetrics::missions)},
-                           {"failed in the program", "", count(&ArmMetrics::failed)},
-                           {"still missing", "", count(&ArmMetrics::missing)}};
-  const auto metrics = MetricDefinitions();
+                           {"flown", "", count(&metrics::ArmMetrics::missions)},
+                           {"failed in the program", "", count(&metrics::ArmMetrics::failed)},
+                           {"still missing", "", count(&metrics::ArmMetrics::missing)}};
+  const auto metrics = metrics::MetricDefinitions();
   for (std::size_t i = 0; i < metrics.size(); ++i) {
     if (i == 0 || metrics[i].group != metrics[i - 1].group)
-      rows.push_back({std::string(GroupTitle(metrics[i].group)), "", nullptr});
+      rows.push_back({std::string(metrics::GroupTitle(metrics[i].group)), "", nullptr});
     rows.push_back({std::string(metrics[i].label), std::string(metrics[i].unit),
-                    [i, &claims](const ArmMetrics& arm) { return MetricCell(arm, i, claims); }});
+                    [i, &claims](const metrics::ArmMetrics& arm) { return MetricCell(arm, i, claims); }});
   }
   return rows;
 }
@@ -56,7 +56,7 @@ std::vector<Row> MakeRows(const std::vector<Claim>& claims) {
 // The cells of one arm, one per row, and how wide they are. The paper has a column where it has a value.
 class ArmColumn {
  public:
-  ArmColumn(const ArmMetrics& arm, const std::vector<Row>& rows) : name_(arm.name) {
+  ArmColumn(const metrics::ArmMetrics& arm, const std::vector<Row>& rows) : name_(arm.name) {
     for (const Row& row : rows) cells_.push_back(row.cell ? row.cell(arm) : Cell{});
     for (const Cell& cell : cells_) {
       value_ = std::max(value_, DisplayWidth(cell.value));
@@ -115,9 +115,9 @@ std::string Block(const std::vector<Row>& rows, std::span<const ArmColumn> colum
 }
 
 // The arms of one stage, as many to a block as the width holds.
-std::string Blocks(std::span<const ArmMetrics> arms, const std::vector<Row>& rows, int width) {
+std::string Blocks(std::span<const metrics::ArmMetrics> arms, const std::vector<Row>& rows, int width) {
   std::vector<ArmColumn> columns;
-  for (const ArmMetrics& arm : arms) columns.emplace_back(arm, rows);
+  for (const metrics::ArmMetrics& arm : arms) columns.emplace_back(arm, rows);
   std::string text;
   for (std::size_t first = 0; first < columns.size();) {
     int used = kLabelWidth + kUnitWidth;
@@ -132,17 +132,18 @@ std::string Blocks(std::span<const ArmMetrics> arms, const std::vector<Row>& row
   return text;
 }
 
-std::string PaperNotes(std::span<const ArmMetrics> arms, const std::vector<Claim>& claims, int width) {
+std::string PaperNotes(std::span<const metrics::ArmMetrics> arms, const std::vector<paper::Claim>& claims,
+                       int width) {
   bool any = false, derived = false;
   std::vector<std::string> elsewhere;
-  for (const ArmMetrics& arm : arms) {
+  for (const metrics::ArmMetrics& arm : arms) {
     for (std::size_t i = 0; i < arm.values.size(); ++i) {
       const PaperCell cell = MakePaperCell(claims, arm, i);
       if (!cell.value) continue;
       any = true;
       derived = derived || cell.value->derived;
       if (!cell.value->elsewhere.empty())
-        elsewhere.push_back(fmt::format("{} {} {}", arm.name, MetricDefinitions()[i].name,
+        elsewhere.push_back(fmt::format("{} {} {}", arm.name, metrics::MetricDefinitions()[i].name,
                                         fmt::join(cell.value->elsewhere, ", ")));
     }
   }
@@ -179,7 +180,8 @@ std::string IntervalNotes(int width) {
 
 }  // namespace
 
-std::string ResultTable(std::span<const ArmMetrics> arms, const std::vector<Claim>& claims, int width) {
+std::string ResultTable(std::span<const metrics::ArmMetrics> arms, const std::vector<paper::Claim>& claims,
+                        int width) {
   if (arms.empty()) return "";
   const std::vector<Row> rows = MakeRows(claims);
   std::string text;
@@ -194,4 +196,4 @@ std::string ResultTable(std::span<const ArmMetrics> arms, const std::vector<Clai
   return text + '\n' + IntervalNotes(width) + PaperNotes(arms, claims, width);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::tables

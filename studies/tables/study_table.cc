@@ -7,7 +7,7 @@
 #include "studies/tables/data_files.h"
 #include "studies/tables/names.h"
 
-namespace ed3r {
+namespace ed3r::tables {
 namespace {
 
 struct Description {
@@ -65,39 +65,44 @@ constexpr std::pair<std::string_view, std::string_view> kShortNames[] = {
     {"duration_max_min", "longest mission"},
 };
 
-using Arms = std::vector<const ArmMetrics*>;
+using Arms = std::vector<const metrics::ArmMetrics*>;
 
-const ArmMetrics* Find(std::span<const ArmMetrics> arms, std::string_view stage, std::string_view name) {
-  for (const ArmMetrics& arm : arms)
+const metrics::ArmMetrics* Find(std::span<const metrics::ArmMetrics> arms, std::string_view stage,
+                                std::string_view name) {
+  for (const metrics::ArmMetrics& arm : arms)
     if (arm.stage == stage && arm.name == name && arm.missions > 0) return &arm;
   return nullptr;
 }
 
 // The named arms of the last stage that holds two of them at least, in the order of `names`.
-Arms FindTogether(std::span<const ArmMetrics> arms, std::span<const std::string_view> names) {
+Arms FindTogether(std::span<const metrics::ArmMetrics> arms, std::span<const std::string_view> names) {
   for (auto last = arms.rbegin(); last != arms.rend(); ++last) {
     Arms found;
     for (const std::string_view name : names)
-      if (const ArmMetrics* arm = Find(arms, last->stage, name)) found.push_back(arm);
+      if (const metrics::ArmMetrics* arm = Find(arms, last->stage, name)) found.push_back(arm);
     if (found.size() >= 2) return found;
   }
   return {};
 }
 
-StudyTable MakeTable(const Description& description, const Arms& arms, std::span<const ArmMetrics> p85) {
+StudyTable MakeTable(const Description& description, const Arms& arms,
+                     std::span<const metrics::ArmMetrics> p85) {
   StudyTable table{description.id, description.title, description.arms_down, {}, {}, {}};
-  for (const ArmMetrics* arm : arms) table.arms.push_back(*arm);
+  for (const metrics::ArmMetrics* arm : arms) table.arms.push_back(*arm);
   if (description.p85)
-    for (const ArmMetrics* arm : arms)
-      if (const ArmMetrics* group = Find(p85, arm->stage, P85Name(arm->name))) table.arms.push_back(*group);
-  for (const ArmMetrics& arm : table.arms) table.labels.push_back(ArmLabel(arm.name));
-  for (const std::string_view metric : description.metrics) table.metrics.push_back(MetricIndex(metric));
+    for (const metrics::ArmMetrics* arm : arms)
+      if (const metrics::ArmMetrics* group = Find(p85, arm->stage, paper::P85Name(arm->name)))
+        table.arms.push_back(*group);
+  for (const metrics::ArmMetrics& arm : table.arms) table.labels.push_back(ArmLabel(arm.name));
+  for (const std::string_view metric : description.metrics)
+    table.metrics.push_back(metrics::MetricIndex(metric));
   return table;
 }
 
 }  // namespace
 
-std::vector<StudyTable> MakeStudyTables(std::span<const ArmMetrics> arms, std::span<const ArmMetrics> p85) {
+std::vector<StudyTable> MakeStudyTables(std::span<const metrics::ArmMetrics> arms,
+                                        std::span<const metrics::ArmMetrics> p85) {
   StudyTable all{"arms", "Every arm", true, {}, {}, {}};
   const std::vector<std::string> names = UniqueArmNames(arms);
   for (std::size_t a = 0; a < arms.size(); ++a) {
@@ -105,17 +110,17 @@ std::vector<StudyTable> MakeStudyTables(std::span<const ArmMetrics> arms, std::s
     all.arms.push_back(arms[a]);
     all.labels.push_back(ArmLabel(names[a]));
   }
-  for (const std::string_view metric : kMainMetrics) all.metrics.push_back(MetricIndex(metric));
+  for (const std::string_view metric : kMainMetrics) all.metrics.push_back(metrics::MetricIndex(metric));
   std::vector<StudyTable> tables;
   if (!all.arms.empty()) tables.push_back(std::move(all));
   for (const Description& description : Descriptions())
-    if (const Arms found = FindTogether(arms, ArmsOfComparison(description.id)); !found.empty())
+    if (const Arms found = FindTogether(arms, paper::ArmsOfComparison(description.id)); !found.empty())
       tables.push_back(MakeTable(description, found, p85));
   return tables;
 }
 
 std::string MetricHeading(std::size_t metric) {
-  const MetricDefinition& definition = MetricDefinitions()[metric];
+  const metrics::MetricDefinition& definition = metrics::MetricDefinitions()[metric];
   std::string heading(definition.label);
   for (const auto& [name, short_name] : kShortNames)
     if (name == definition.name) heading = short_name;
@@ -123,4 +128,4 @@ std::string MetricHeading(std::size_t metric) {
   return heading;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::tables

@@ -9,17 +9,17 @@
 #include "studies/tables/paper_cell.h"
 #include "studies/tables/study_table.h"
 
-namespace ed3r {
+namespace ed3r::tables {
 namespace {
 
 struct Cell {
   std::string value, interval, paper;  // "21.93", "19.85–23.95", "21.44"; empty where there is none
 };
 
-Cell MakeCell(const StudyTable& table, const std::vector<Claim>& claims, std::size_t arm,
+Cell MakeCell(const StudyTable& table, const std::vector<paper::Claim>& claims, std::size_t arm,
               std::size_t metric) {
-  const MetricValue& ours = table.arms[arm].values[metric];
-  const int decimals = MetricDefinitions()[metric].decimals;
+  const metrics::MetricValue& ours = table.arms[arm].values[metric];
+  const int decimals = metrics::MetricDefinitions()[metric].decimals;
   Cell cell{FormatValue(ours.value, decimals), "", ""};
   if (!std::isnan(ours.lo))
     cell.interval = FormatValue(ours.lo, decimals) + "–" + FormatValue(ours.hi, decimals);
@@ -35,7 +35,7 @@ struct Grid {
   std::vector<std::vector<Cell>> cells;
 };
 
-Grid MakeGrid(const StudyTable& table, const std::vector<Claim>& claims) {
+Grid MakeGrid(const StudyTable& table, const std::vector<paper::Claim>& claims) {
   Grid grid;
   std::vector<std::string> metrics;
   for (const std::size_t metric : table.metrics) metrics.push_back(MetricHeading(metric));
@@ -102,7 +102,7 @@ std::string MarkdownText(std::string_view utf8) {
   return Replace(utf8, kSigns);
 }
 
-std::string MarkdownTable(const StudyTable& table, const std::vector<Claim>& claims) {
+std::string MarkdownTable(const StudyTable& table, const std::vector<paper::Claim>& claims) {
   const Grid grid = MakeGrid(table, claims);
   std::string text =
       fmt::format("**{}.** 95 % intervals in parentheses, the paper's values in brackets.\n\n| {} |",
@@ -122,7 +122,7 @@ std::string MarkdownTable(const StudyTable& table, const std::vector<Claim>& cla
   return text + '\n';
 }
 
-std::string LatexTable(const StudyTable& table, const std::vector<Claim>& claims) {
+std::string LatexTable(const StudyTable& table, const std::vector<paper::Claim>& claims) {
   const Grid grid = MakeGrid(table, claims);
   std::string text = fmt::format(
       "% needs \\usepackage{{booktabs}}\n\\begin{{table}}\n  \\centering\n  \\footnotesize\n"
@@ -147,34 +147,35 @@ std::string LatexTable(const StudyTable& table, const std::vector<Claim>& claims
   return text + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
 }
 
-std::string CsvTable(const StudyTable& table, const std::vector<Claim>& claims) {
+std::string CsvTable(const StudyTable& table, const std::vector<paper::Claim>& claims) {
   std::string csv = "stage,arm,missions,metric,unit,value,lo,hi,n,paper\n";
-  for (const ArmMetrics& arm : table.arms)
+  for (const metrics::ArmMetrics& arm : table.arms)
     for (const std::size_t metric : table.metrics) {
-      const MetricValue& ours = arm.values[metric];
+      const metrics::MetricValue& ours = arm.values[metric];
       const PaperCell paper = MakePaperCell(claims, arm, metric);
       csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", CsvField(arm.stage), CsvField(arm.name),
-                         arm.missions, MetricDefinitions()[metric].name, MetricDefinitions()[metric].unit,
-                         CsvNumber(ours.value), CsvNumber(ours.lo), CsvNumber(ours.hi), ours.n,
+                         arm.missions, metrics::MetricDefinitions()[metric].name,
+                         metrics::MetricDefinitions()[metric].unit, metrics::CsvNumber(ours.value),
+                         metrics::CsvNumber(ours.lo), metrics::CsvNumber(ours.hi), ours.n,
                          paper.value ? paper.value->printed : "");
     }
   return csv;
 }
 
-nlohmann::ordered_json JsonTable(const StudyTable& table, const std::vector<Claim>& claims) {
+nlohmann::ordered_json JsonTable(const StudyTable& table, const std::vector<paper::Claim>& claims) {
   nlohmann::ordered_json json = {
       {"id", table.id}, {"title", table.title}, {"arms", nlohmann::ordered_json::array()}};
   for (std::size_t a = 0; a < table.arms.size(); ++a) {
-    const ArmMetrics& arm = table.arms[a];
+    const metrics::ArmMetrics& arm = table.arms[a];
     nlohmann::ordered_json entry = {
         {"stage", arm.stage}, {"arm", arm.name}, {"label", table.labels[a]}, {"missions", arm.missions}};
     for (const std::size_t metric : table.metrics) {
-      const MetricValue& ours = arm.values[metric];
+      const metrics::MetricValue& ours = arm.values[metric];
       const PaperCell paper = MakePaperCell(claims, arm, metric);
-      entry[std::string(MetricDefinitions()[metric].name)] = {
-          {"mean", JsonNumber(ours.value)},
-          {"lo", JsonNumber(ours.lo)},
-          {"hi", JsonNumber(ours.hi)},
+      entry[std::string(metrics::MetricDefinitions()[metric].name)] = {
+          {"mean", metrics::JsonNumber(ours.value)},
+          {"lo", metrics::JsonNumber(ours.lo)},
+          {"hi", metrics::JsonNumber(ours.hi)},
           {"n", ours.n},
           {"paper",
            paper.value ? nlohmann::ordered_json(paper.value->value) : nlohmann::ordered_json(nullptr)}};
@@ -184,4 +185,4 @@ nlohmann::ordered_json JsonTable(const StudyTable& table, const std::vector<Clai
   return json;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::tables

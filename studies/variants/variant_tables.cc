@@ -10,7 +10,7 @@
 #include "studies/tables/layout.h"
 #include "studies/variants/variants.h"
 
-namespace ed3r {
+namespace ed3r::variants {
 namespace {
 
 constexpr int kArmWidth = 14, kVariantWidth = 26, kCellWidth = 26;
@@ -27,37 +27,41 @@ std::string CellText(const VariantDifference& d) {
 
 std::string DifferenceTable(const VariantStudy& study) {
   const auto heading = [](const char* metric) {
-    const MetricDefinition& definition = MetricDefinitions()[MetricIndex(metric)];
+    const metrics::MetricDefinition& definition = metrics::MetricDefinitions()[metrics::MetricIndex(metric)];
     return fmt::format("{}, {}", definition.label, definition.unit);
   };
   std::string text =
       fmt::format("Variants minus '{}', {} (* interval without 0)\n", study.variants[0],
                   study.same_draws ? "paired by scenario" : "of other seeds: other draws at the same places");
-  text += Pad("arm", kArmWidth, Align::kLeft) + Pad("variant", kVariantWidth, Align::kLeft);
-  for (const char* metric : kComparedMetrics) text += Pad(heading(metric), kCellWidth, Align::kRight);
-  text += fmt::format("\n{}\n", Rule(kTerminalWidth));
+  text += tables::Pad("arm", kArmWidth, tables::Align::kLeft) +
+          tables::Pad("variant", kVariantWidth, tables::Align::kLeft);
+  for (const char* metric : kComparedMetrics)
+    text += tables::Pad(heading(metric), kCellWidth, tables::Align::kRight);
+  text += fmt::format("\n{}\n", tables::Rule(tables::kTerminalWidth));
   constexpr std::size_t kMetrics = std::size(kComparedMetrics);
   for (std::size_t i = 0; i < study.differences.size(); i += kMetrics) {
     const VariantDifference& first = study.differences[i];
-    text += Pad(first.arm, kArmWidth, Align::kLeft) + Pad(first.variant, kVariantWidth, Align::kLeft);
+    text += tables::Pad(first.arm, kArmWidth, tables::Align::kLeft) +
+            tables::Pad(first.variant, kVariantWidth, tables::Align::kLeft);
     for (std::size_t m = 0; m < kMetrics; ++m)
-      text += Pad(CellText(study.differences[i + m]), kCellWidth, Align::kRight);
+      text += tables::Pad(CellText(study.differences[i + m]), kCellWidth, tables::Align::kRight);
     text += "\n";
   }
   if (std::any_of(study.differences.begin(), study.differences.end(),
                   [](const VariantDifference& d) { return d.OneNetwork(); }))
-    text += Wrap("one trained network on a side: the luck of training is not in the interval.", "? ",
-                 kTerminalWidth);
+    text += tables::Wrap("one trained network on a side: the luck of training is not in the interval.", "? ",
+                         tables::kTerminalWidth);
   const auto intervals = std::count_if(study.differences.begin(), study.differences.end(),
                                        [](const auto& d) { return !std::isnan(d.lo) && !d.OneNetwork(); });
   const auto stars = std::count_if(study.differences.begin(), study.differences.end(),
                                    [](const VariantDifference& d) { return d.Certain(); });
   return text +
-         Wrap(fmt::format(
-                  "{} of {} intervals have a star; each is 95 % by itself, so that about {:.0f} would by "
-                  "chance (the three of an arm go together).",
-                  stars, intervals, std::ceil(0.05 * static_cast<double>(intervals))),
-              "", kTerminalWidth);
+         tables::Wrap(
+             fmt::format(
+                 "{} of {} intervals have a star; each is 95 % by itself, so that about {:.0f} would by "
+                 "chance (the three of an arm go together).",
+                 stars, intervals, std::ceil(0.05 * static_cast<double>(intervals))),
+             "", tables::kTerminalWidth);
 }
 
 std::string ChangeCounts(const VariantStudy& study) {
@@ -82,36 +86,39 @@ std::string ChangeCounts(const VariantStudy& study) {
 // Every changed verdict, of two variants.
 std::string ChangeList(const VariantStudy& study) {
   if (study.variants.size() != 2 || study.changes.empty()) return "";
-  constexpr int kVerdictWidth = 20, kWords = kTerminalWidth - kIdWidth - 2 * kVerdictWidth;
+  constexpr int kVerdictWidth = 20, kWords = tables::kTerminalWidth - kIdWidth - 2 * kVerdictWidth;
   std::string text;
   for (std::size_t i = 0; i < study.verdicts.front().claims.size(); ++i) {
-    const JudgedClaim& before = study.verdicts.front().claims[i];
-    const JudgedClaim& after = study.verdicts.back().claims[i];
+    const claims::JudgedClaim& before = study.verdicts.front().claims[i];
+    const claims::JudgedClaim& after = study.verdicts.back().claims[i];
     if (before.all.verdict == after.all.verdict) continue;
-    text += Pad(before.claim.id, kIdWidth, Align::kLeft) +
-            Pad(ClaimInWords(before.claim, kWords - 1), kWords, Align::kLeft) +
-            Pad(NameWithLuck(before), kVerdictWidth, Align::kLeft) + NameWithLuck(after) + "\n";
+    text += tables::Pad(before.claim.id, kIdWidth, tables::Align::kLeft) +
+            tables::Pad(claims::ClaimInWords(before.claim, kWords - 1), kWords, tables::Align::kLeft) +
+            tables::Pad(claims::NameWithLuck(before), kVerdictWidth, tables::Align::kLeft) +
+            claims::NameWithLuck(after) + "\n";
   }
-  return fmt::format("\n{}{}{}{}\n{}\n{}", Pad("", kIdWidth, Align::kLeft),
-                     Pad("changed verdicts", kWords, Align::kLeft), Pad("1", kVerdictWidth, Align::kLeft),
-                     "2", Rule(kTerminalWidth), text);
+  return fmt::format("\n{}{}{}{}\n{}\n{}", tables::Pad("", kIdWidth, tables::Align::kLeft),
+                     tables::Pad("changed verdicts", kWords, tables::Align::kLeft),
+                     tables::Pad("1", kVerdictWidth, tables::Align::kLeft), "2",
+                     tables::Rule(tables::kTerminalWidth), text);
 }
 
 // Which side the evidence is on, of one claim alone: a few networks cannot pass Holm's correction over all claims.
-char SideOf(const Judgement& judged) {
+char SideOf(const claims::Judgement& judged) {
   constexpr double kLevel = 0.05;
-  if (judged.verdict == Verdict::kNotMeasured) return ' ';
+  if (judged.verdict == claims::Verdict::kNotMeasured) return ' ';
   return judged.p < kLevel ? '+' : judged.p_against < kLevel ? '-' : '.';
 }
 
 // Orders and comparisons on which the evidence changes sides, a row each; one sign per variant.
 std::string ChangeMatrix(const VariantStudy& study) {
-  const int width = std::clamp(kTerminalWidth - kIdWidth - 3 * static_cast<int>(study.variants.size()),
-                               kFewestWords, kMostWords);
+  const int width =
+      std::clamp(tables::kTerminalWidth - kIdWidth - 3 * static_cast<int>(study.variants.size()),
+                 kFewestWords, kMostWords);
   std::string rows;
   int alike = 0;
   for (std::size_t i = 0; i < study.verdicts.front().claims.size(); ++i) {
-    const Claim& claim = study.verdicts.front().claims[i].claim;
+    const paper::Claim& claim = study.verdicts.front().claims[i].claim;
     if (claim.kind != "order" && claim.kind != "ratio") continue;
     const auto side = [&](std::size_t v) { return SideOf(study.verdicts[v].claims[i].all); };
     std::string signs;
@@ -124,20 +131,20 @@ std::string ChangeMatrix(const VariantStudy& study) {
       ++alike;
       continue;
     }
-    rows += Pad(claim.id, kIdWidth, Align::kLeft) + Pad(ClaimInWords(claim, width - 1), width, Align::kLeft) +
-            signs + "\n";
+    rows += tables::Pad(claim.id, kIdWidth, tables::Align::kLeft) +
+            tables::Pad(claims::ClaimInWords(claim, width - 1), width, tables::Align::kLeft) + signs + "\n";
   }
   if (rows.empty()) return "";
-  std::string heading =
-      Pad("", kIdWidth, Align::kLeft) + Pad("sides of orders and comparisons", width, Align::kLeft);
+  std::string heading = tables::Pad("", kIdWidth, tables::Align::kLeft) +
+                        tables::Pad("sides of orders and comparisons", width, tables::Align::kLeft);
   for (std::size_t v = 0; v < study.variants.size(); ++v) heading += fmt::format("{:>3}", v + 1);
-  return fmt::format("\n{}\n{}\n{}", heading, Rule(DisplayWidth(heading)), rows) +
-         Wrap(
+  return fmt::format("\n{}\n{}\n{}", heading, tables::Rule(tables::DisplayWidth(heading)), rows) +
+         tables::Wrap(
              fmt::format(
                  "+ as claimed, - the opposite (p < 0.05, paired, of this claim alone, not corrected for the "
                  "number of claims), . neither. {} more are alike in all.",
                  alike),
-             "", kTerminalWidth);
+             "", tables::kTerminalWidth);
 }
 
 // In how many variants a claim holds, of those that measure it.
@@ -147,10 +154,10 @@ struct Tally {
 
 Tally TallyOf(const VariantStudy& study, std::size_t claim) {
   Tally tally;
-  for (const ClaimStudy& verdicts : study.verdicts) {
-    const Verdict verdict = verdicts.claims[claim].all.verdict;
-    tally.measured += verdict != Verdict::kNotMeasured;
-    tally.holds += Holds(verdict);
+  for (const claims::ClaimStudy& verdicts : study.verdicts) {
+    const claims::Verdict verdict = verdicts.claims[claim].all.verdict;
+    tally.measured += verdict != claims::Verdict::kNotMeasured;
+    tally.holds += claims::Holds(verdict);
   }
   return tally;
 }
@@ -160,14 +167,14 @@ std::string Everywhere(const VariantStudy& study) {
   std::string in_all, in_none;
   int all = 0, none = 0, counted = 0;
   for (std::size_t i = 0; i < study.verdicts.front().claims.size(); ++i) {
-    const JudgedClaim& judged = study.verdicts.front().claims[i];
+    const claims::JudgedClaim& judged = study.verdicts.front().claims[i];
     const Tally tally = TallyOf(study, i);
     const bool built = judged.claim.kind == "setup" || judged.claim.source == "construction";
     if (built || !judged.repeats.empty() || tally.measured < static_cast<int>(study.variants.size()))
       continue;
     ++counted;
-    const std::string line = Pad(judged.claim.id, kIdWidth + 1, Align::kLeft) +
-                             ClaimInWords(judged.claim, kTerminalWidth - kIdWidth - 1) + "\n";
+    const std::string line = tables::Pad(judged.claim.id, kIdWidth + 1, tables::Align::kLeft) +
+                             claims::ClaimInWords(judged.claim, tables::kTerminalWidth - kIdWidth - 1) + "\n";
     if (tally.holds == tally.measured) in_all += line, ++all;
     if (tally.holds == 0) in_none += line, ++none;
   }
@@ -203,15 +210,15 @@ std::string VariantVerdictCsv(const VariantStudy& study) {
   csv += "\n";
   if (study.verdicts.empty()) return csv;
   for (std::size_t i = 0; i < study.verdicts.front().claims.size(); ++i) {
-    const Claim& claim = study.verdicts.front().claims[i].claim;
+    const paper::Claim& claim = study.verdicts.front().claims[i].claim;
     const Tally tally = TallyOf(study, i);
     csv += fmt::format("{},{},{},{},{},{},{}", claim.id, CsvField(claim.strategy), claim.metric, claim.kind,
                        CsvField(claim.comparison), tally.holds, tally.measured);
-    for (const ClaimStudy& verdicts : study.verdicts)
-      csv += fmt::format(",{}", NameWithLuck(verdicts.claims[i]));
+    for (const claims::ClaimStudy& verdicts : study.verdicts)
+      csv += fmt::format(",{}", claims::NameWithLuck(verdicts.claims[i]));
     csv += "\n";
   }
   return csv;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::variants

@@ -12,7 +12,7 @@
 #include "studies/claims/verdicts.h"
 #include "studies/metrics/arm.h"
 
-namespace ed3r {
+namespace ed3r::variants {
 
 // Metrics whose differences are told.
 inline constexpr const char* kComparedMetrics[] = {"total_energy_kj", "msr_pct", "duration_mean_min"};
@@ -35,7 +35,7 @@ struct VariantDifference {
 // A claim of the paper that is judged otherwise than in the first variant.
 struct VerdictChange {
   std::string claim, variant;
-  Verdict base, here;
+  claims::Verdict base, here;
   bool within_luck = false;  // the one that differs does so within the luck of one experiment (JudgedClaim)
 
   // One run has the claim hold, in size or at least in direction, the other has it differ beyond luck.
@@ -46,26 +46,27 @@ struct VariantStudy {
   std::vector<std::string>
       variants;  // as flown, the first is what the others are compared with; empty: no variants
   std::vector<VariantDifference> differences;  // by variant, then arm, then metric: all of kComparedMetrics
-  std::vector<ClaimStudy> verdicts;            // one per variant; none where they are left out
+  std::vector<claims::ClaimStudy> verdicts;    // one per variant; none where they are left out
   std::vector<VerdictChange> changes;
   bool same_draws =
       true;  // false for runs of different seeds: a scenario is then another draw at the same places
 };
 
 // Names of the variants among the arms, in their order; empty where no arm has one.
-std::vector<std::string> VariantsOf(std::span<const ArmData> arms);
+std::vector<std::string> VariantsOf(std::span<const metrics::ArmData> arms);
 
 // The arms of one variant, under their own names.
-std::vector<ArmData> ArmsOfVariant(std::span<const ArmData> arms, const std::string& variant);
+std::vector<metrics::ArmData> ArmsOfVariant(std::span<const metrics::ArmData> arms,
+                                            const std::string& variant);
 
 // The same arms as a variant of that name: for runs that are compared though they were flown apart.
-std::vector<ArmData> AsVariant(std::vector<ArmData> arms, const std::string& variant);
+std::vector<metrics::ArmData> AsVariant(std::vector<metrics::ArmData> arms, const std::string& variant);
 
 // Whether the paper's claims are judged in every variant.
 enum class Verdicts { kJudged, kLeftOut };
 
 // Nothing is compared, and `variants` is empty, where the arms have no variants.
-VariantStudy CompareVariants(std::span<const ArmData> arms, Verdicts verdicts);
+VariantStudy CompareVariants(std::span<const metrics::ArmData> arms, Verdicts verdicts);
 
 // Differences, how many verdicts change (of two variants: which), and the sides of orders and comparisons, in lines of at most kTerminalWidth characters; empty without variants.
 std::string VariantText(const VariantStudy& study);
@@ -77,4 +78,4 @@ std::string DifferenceCsv(const VariantStudy& study);
 // measure it, and its verdict in each, "differs (luck)" where one network may differ so.
 std::string VariantVerdictCsv(const VariantStudy& study);
 
-}  // namespace ed3r
+}  // namespace ed3r::variants

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ed3r {
+namespace ed3r::agents {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -36,7 +36,7 @@ TEST(ActionRangesTest, DrawsFillTheRangesAndStayInside) {
   Stream stream(1, 2, Purpose::kMotion);
   double largest_m = 0.0;
   for (int i = 0; i < 2000; ++i) {
-    const MotionCommand command = DrawCommand(ranges, agents, 45 * kDegree, stream);
+    const robot::MotionCommand command = DrawCommand(ranges, agents, 45 * kDegree, stream);
     for (int axis = 0; axis < 3; ++axis) {
       ASSERT_LE(std::abs(command.displacement_m[axis]), ranges.axis_m);
       largest_m = std::max(largest_m, std::abs(command.displacement_m[axis]));
@@ -50,4 +50,4 @@ TEST(ActionRangesTest, DrawsFillTheRangesAndStayInside) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::agents

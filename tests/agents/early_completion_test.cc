@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace ed3r {
+namespace ed3r::agents {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -90,4 +90,4 @@ TEST(EarlyCompletionTest, PatienceIsAKey) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -9,18 +9,18 @@
 #include "engine/core/check.h"
 #include "kernels/dense_net.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 namespace {
 
 // A network of the design with random weights: some function of its inputs.
-Model RandomModel(const NetworkDesign& design, std::uint32_t seed) {
-  ModelData data;
-  data.weights.resize(ParameterCount(ShapeOf(design)));
+rfnn::Model RandomModel(const rfnn::NetworkDesign& design, std::uint32_t seed) {
+  rfnn::ModelData data;
+  data.weights.resize(kernels::ParameterCount(rfnn::ShapeOf(design)));
   Stream stream(seed, 0, Purpose::kTraining);
   for (float& weight : data.weights) weight = static_cast<float>(0.2 * stream.Normal());
   data.scaling.input_mean.assign(design.features.size(), 0.0);
   data.scaling.input_sd.assign(design.features.size(), 10.0);
-  return Model(design, data);
+  return rfnn::Model(design, data);
 }
 
 class GreedyTest : public ::testing::Test {
@@ -36,9 +36,9 @@ class GreedyTest : public ::testing::Test {
   }
 
   Config config_;
-  Model rc_ = RandomModel(kRcNetwork, 1);
-  Model robot_ = RandomModel(kRobotNetwork, 2);
-  Model::Workspace workspace_;
+  rfnn::Model rc_ = RandomModel(rfnn::kRcNetwork, 1);
+  rfnn::Model robot_ = RandomModel(rfnn::kRobotNetwork, 2);
+  rfnn::Model::Workspace workspace_;
 };
 
 TEST_F(GreedyTest, TheRcTakesTheBestOfItsCandidates) {
@@ -171,4 +171,4 @@ TEST_F(GreedyTest, MissingNetworksAreAnInternalError) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::agents

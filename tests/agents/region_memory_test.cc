@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ed3r {
+namespace ed3r::agents {
 namespace {
 
 using Eigen::Vector3d;
@@ -73,4 +73,4 @@ TEST(RegionMemoryTest, WithNowhereToGoAllCandidatesCount) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ed3r {
+namespace ed3r::agents {
 namespace {
 
 // By hand: E = 2 kJ of 10 kJ, eta = 0.5 below 0.75: -(0.2 + 2 (0.25 + 0.5)).
@@ -27,4 +27,4 @@ TEST(RewardTest, WeightsAreTheirs) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::agents

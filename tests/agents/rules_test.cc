@@ -2,7 +2,7 @@
 
 #include "engine/agents/strategies/rbs_execution.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 namespace {
 
 // Share of a decision over many draws for given ratios.
@@ -51,4 +51,4 @@ TEST(RulesTest, ModelIsAKey) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -7,7 +7,7 @@
 #include "engine/agents/robot_agent.h"
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 namespace {
 
 // The paper's Table of ablations, line by line.
@@ -73,4 +73,4 @@ TEST(StrategyTest, OrTossesACoinForOffloadingFirst) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::agents

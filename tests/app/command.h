@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-namespace ed3r {
+namespace ed3r::app {
 
 struct CommandResult {
   int status = -1;
@@ -49,4 +49,4 @@ inline CommandResult Ed3r(const std::string& arguments, const std::string& envir
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadAll(scratch / "out"), ReadAll(scratch / "err")};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::app

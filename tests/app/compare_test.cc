@@ -6,7 +6,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,4 +89,4 @@ TEST_F(CompareTest, WhatCannotBeComparedIsSaid) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

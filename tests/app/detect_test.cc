@@ -6,7 +6,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 class DetectCommand : public testing::Test {
@@ -64,4 +64,4 @@ TEST_F(DetectCommand, FewViewsAreSaidToBeTooFew) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -9,7 +9,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -222,4 +222,4 @@ TEST_F(ExplainTest, TimestepsAreWrittenWithTheNamesThatExplainUses) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

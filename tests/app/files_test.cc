@@ -9,7 +9,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -207,4 +207,4 @@ TEST(FilesTest, TooLittleMemoryIsSaidInOneLine) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

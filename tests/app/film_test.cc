@@ -8,7 +8,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,4 +78,4 @@ TEST_F(FilmTest, WhatCannotBeWrittenIsRefusedInOneLineBeforeAnythingFlies) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -12,7 +12,7 @@
 #include "engine/core/sha256.h"
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 const std::string kWorld = ED3R_SOURCE_DIR "/sweeps/worlds/training_b.yaml";
@@ -99,4 +99,4 @@ TEST(FramesCommand, BadInputIsOneLineAndNothingIsWritten) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -4,7 +4,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,4 +70,4 @@ TEST(MessagesTest, HelpTellsWhatZeroThreadsMean) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

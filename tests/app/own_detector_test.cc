@@ -7,7 +7,7 @@
 #include "tests/app/command.h"
 #include "tests/vision/onnx_writer.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ TEST_F(OwnDetectorCommand, AMissionWhoseDetectorAnswersNoNumberHasFailed) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -6,7 +6,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,4 +56,4 @@ TEST(OwnGroundTest, ARunKeepsWhatStandsBesideItsGrid) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -11,7 +11,7 @@
 #include "engine/core/random.h"
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 using Values = std::map<std::string, double>;
@@ -145,4 +145,4 @@ TEST(PhysicsCommandTest, BadInputIsOneLineAndExitTwo) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

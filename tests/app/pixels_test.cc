@@ -4,7 +4,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,4 +56,4 @@ TEST(PixelsTest, ADetectorThatIsNoneIsRefusedBeforeAnythingFlies) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

@@ -7,7 +7,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,4 +75,4 @@ TEST(PrecisionTest, WhatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

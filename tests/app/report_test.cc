@@ -6,7 +6,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -266,4 +266,4 @@ TEST_F(ReportTest, AFolderWithoutARunIsBadInput) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

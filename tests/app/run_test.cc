@@ -14,7 +14,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -351,4 +351,4 @@ TEST(RunTest, ReportIsJsonWithIntervals) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

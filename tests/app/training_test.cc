@@ -8,7 +8,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 // A second warm-up is flown after the first networks have flown.
@@ -119,4 +119,4 @@ TEST(TrainingTest, AWarmUpThatIsTooShortForItsNetworksIsRefused) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

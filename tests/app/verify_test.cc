@@ -7,7 +7,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -185,4 +185,4 @@ stages:
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

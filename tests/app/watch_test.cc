@@ -7,7 +7,7 @@
 
 #include "tests/app/command.h"
 
-namespace ed3r {
+namespace ed3r::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ TEST_F(WatchTest, AReportLinksMissionsToWatch) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::app

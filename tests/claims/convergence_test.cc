@@ -8,7 +8,7 @@
 #include "tests/claims/synthetic_run.h"
 #include "tests/studies/csv_rows.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 const ConvergencePoint& At(const std::vector<ConvergencePoint>& points, std::string_view metric,
@@ -19,7 +19,7 @@ const ConvergencePoint& At(const std::vector<ConvergencePoint>& points, std::str
 }
 
 TEST(ConvergenceTest, DoublesUpToAllMissions) {
-  const std::vector<ArmData> arms = {MakeArm({"rbs", 20}, {.missions = 850})};
+  const std::vector<metrics::ArmData> arms = {MakeArm({"rbs", 20}, {.missions = 850})};
   const std::vector<ConvergencePoint> points = Convergence(arms);
   std::vector<std::int64_t> counts;
   for (const ConvergencePoint& point : points)
@@ -28,8 +28,8 @@ TEST(ConvergenceTest, DoublesUpToAllMissions) {
 }
 
 TEST(ConvergenceTest, TheLastPointIsTheTables) {
-  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20, 0.1, 0.3})};
-  const MetricValue table = ComputeMetrics(arms[0])["total_energy_kj"];
+  const std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 20, 0.1, 0.3})};
+  const metrics::MetricValue table = metrics::ComputeMetrics(arms[0])["total_energy_kj"];
   const ConvergencePoint last = At(Convergence(arms), "total_energy_kj", 280);
   EXPECT_EQ(last.value, table.value);
   EXPECT_EQ(last.half_width, (table.hi - table.lo) / 2);
@@ -39,7 +39,7 @@ TEST(ConvergenceTest, TheLastPointIsTheTables) {
 
 // Sixteen times the missions: a quarter of the width, but only where training had no luck.
 TEST(ConvergenceTest, MissionsDoNotBuyOffTheLuckOfTraining) {
-  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20, 0, 0.3}, {.missions = 2240})};
+  const std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 20, 0, 0.3}, {.missions = 2240})};
   const std::vector<ConvergencePoint> points = Convergence(arms);
   const ConvergencePoint few = At(points, "total_energy_kj", 200), many = At(points, "total_energy_kj", 2240);
   EXPECT_NEAR(many.half_width_missions / few.half_width_missions, std::sqrt(200.0 / 2240), 0.04);
@@ -47,13 +47,13 @@ TEST(ConvergenceTest, MissionsDoNotBuyOffTheLuckOfTraining) {
 }
 
 TEST(ConvergenceTest, SmallArmsHaveNone) {
-  EXPECT_TRUE(Convergence(std::vector<ArmData>{MakeArm({"rbs", 20}, {.missions = 49})}).empty());
+  EXPECT_TRUE(Convergence(std::vector<metrics::ArmData>{MakeArm({"rbs", 20}, {.missions = 49})}).empty());
   EXPECT_EQ(CsvRows(ConvergenceCsv({})).size(), 1u);
 }
 
 TEST(ConvergenceTest, CsvHasEveryPoint) {
   const std::vector<ConvergencePoint> points =
-      Convergence(std::vector<ArmData>{MakeArm({"rbs", 20}, {.missions = 60})});
+      Convergence(std::vector<metrics::ArmData>{MakeArm({"rbs", 20}, {.missions = 60})});
   const std::vector<CsvRow> rows = CsvRows(ConvergenceCsv(points));
   ASSERT_EQ(rows.size(), points.size() + 1);
   EXPECT_EQ(rows[1][1], "rbs");
@@ -61,4 +61,4 @@ TEST(ConvergenceTest, CsvHasEveryPoint) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::claims

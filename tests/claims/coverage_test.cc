@@ -12,7 +12,7 @@
 #include "engine/core/random.h"
 #include "studies/statistics/resampling.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 struct Design {
@@ -46,8 +46,8 @@ Study Draw(const Design& design, int number) {
   return study;
 }
 
-Resampled Difference(const Study& study, const Design& design) {
-  const Resampler resampler(study.network, design.networks);
+statistics::Resampled Difference(const Study& study, const Design& design) {
+  const statistics::Resampler resampler(study.network, design.networks);
   std::vector<int> counts;
   const auto difference = [&](auto count) {
     double sum = 0, all = 0;
@@ -55,7 +55,7 @@ Resampled Difference(const Study& study, const Design& design) {
       sum += count(i) * (study.first[i] - study.second[i]), all += count(i);
     return sum / all;
   };
-  Resampled result;
+  statistics::Resampled result;
   result.network_count = design.networks;
   result.value = difference([](std::size_t) { return 1; });
   for (int b = 0; b < design.resamples; ++b) {
@@ -72,14 +72,14 @@ Coverage Fly(const Design& design) {
   Coverage outcome;
   const double share = 1.0 / design.studies;
   for (int s = 0; s < design.studies; ++s) {
-    Resampled number = Difference(Draw(design, s), design);
-    const Uncertainty u = UncertaintyOf(number);
+    statistics::Resampled number = Difference(Draw(design, s), design);
+    const statistics::Uncertainty u = statistics::UncertaintyOf(number);
     outcome.covered += u.lo <= 0 && 0 <= u.hi ? share : 0;  // the arms are alike in truth
     outcome.half_width += share * (u.hi - u.lo) / 2;
-    const Sides sides = TestAgainst(number, u, 0);
+    const statistics::Sides sides = statistics::TestAgainst(number, u, 0);
     outcome.wrong += sides.above < 0.05 || sides.below < 0.05 ? share : 0;
     number.networks.clear(), number.network_count = 1;
-    const Uncertainty missions = UncertaintyOf(number);
+    const statistics::Uncertainty missions = statistics::UncertaintyOf(number);
     outcome.covered_by_missions += missions.lo <= 0 && 0 <= missions.hi ? share : 0;
   }
   return outcome;
@@ -117,4 +117,4 @@ TEST(CoverageTest, DISABLED_PrintsTheTable) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::claims

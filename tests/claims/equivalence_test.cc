@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -51,7 +51,7 @@ TEST(EquivalenceTest, AMissingIntervalIsNotCertainty) {
 TEST(EquivalenceTest, Margins) {
   EXPECT_DOUBLE_EQ(MarginOf(34.99, false), 3.499);
   EXPECT_DOUBLE_EQ(MarginOf(97.18, true), 5.0);
-  Claim claim;
+  paper::Claim claim;
   claim.unit = "% of missions", claim.tolerance = 7;
   EXPECT_DOUBLE_EQ(MarginOf(claim, 85), 7.0);
   claim.tolerance = 1;  // words may be sharper than the rule as well
@@ -63,4 +63,4 @@ TEST(EquivalenceTest, Margins) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -8,7 +8,7 @@
 #include "engine/core/check.h"
 #include "studies/metrics/definitions.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 // ed3r-65 is 2, ed3r-75 is 3, ed3r-85 is 5, ablation-N is 10 N, rbs is 7, everything else NaN.
@@ -83,9 +83,9 @@ TEST(ExpressionTest, MetricsByName) {
       ParseExpression("movement_energy_kj(rbs) > msr_pct(rbs) + wer_pct(ed3r-75)", "tradeoff");
   const std::vector<Cell> cells = CellsOf(expression);
   ASSERT_EQ(cells.size(), 3u);
-  EXPECT_EQ(cells[0], (Cell{"ed3r-75", MetricIndex("wer_pct")}));
-  EXPECT_EQ(cells[1], (Cell{"rbs", MetricIndex("movement_energy_kj")}));
-  EXPECT_EQ(cells[2], (Cell{"rbs", MetricIndex("msr_pct")}));
+  EXPECT_EQ(cells[0], (Cell{"ed3r-75", metrics::MetricIndex("wer_pct")}));
+  EXPECT_EQ(cells[1], (Cell{"rbs", metrics::MetricIndex("movement_energy_kj")}));
+  EXPECT_EQ(cells[2], (Cell{"rbs", metrics::MetricIndex("msr_pct")}));
   EXPECT_EQ(TextOf(expression.formula), "msr_pct(rbs) + wer_pct(ed3r-75) < movement_energy_kj(rbs)");
 }
 
@@ -95,7 +95,7 @@ double Pareto(const Cell& cell) {
       {"ed3r-65", {10, 90}}, {"ed3r-75", {12, 95}}, {"ed3r-85", {14, 93}}};
   const auto found = points.find(cell.arm);
   const auto [energy, success] = found == points.end() ? std::pair(50.0, 50.0) : found->second;
-  return cell.metric == MetricIndex("total_energy_kj") ? energy : success;
+  return cell.metric == metrics::MetricIndex("total_energy_kj") ? energy : success;
 }
 
 TEST(ExpressionTest, ParetoFrontier) {
@@ -138,4 +138,4 @@ TEST(ExpressionTest, BareArmsNeedAMetric) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::claims

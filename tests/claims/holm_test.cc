@@ -4,11 +4,11 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 void ExpectAdjusted(const std::vector<double>& p, const std::vector<double>& expected) {
-  const std::vector<double> adjusted = HolmAdjust(p);
+  const std::vector<double> adjusted = statistics::HolmAdjust(p);
   ASSERT_EQ(adjusted.size(), expected.size());
   for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(adjusted[i], expected[i], 1e-12) << i;
 }
@@ -21,13 +21,14 @@ TEST(HolmTest, TiesAreAdjustedAlike) { ExpectAdjusted({0.02, 0.02, 0.5}, {0.06, 
 TEST(HolmTest, StopsAtOneAndKeepsASingleOne) {
   ExpectAdjusted({0.6, 0.7, 0}, {1, 1, 0});
   ExpectAdjusted({0.04}, {0.04});
-  EXPECT_TRUE(HolmAdjust({}).empty());
+  EXPECT_TRUE(statistics::HolmAdjust({}).empty());
 }
 
 TEST(HolmTest, OnlyProbabilities) {
-  EXPECT_THROW(HolmAdjust(std::vector<double>{1.2}), InternalError);
-  EXPECT_THROW(HolmAdjust(std::vector<double>{std::numeric_limits<double>::quiet_NaN()}), InternalError);
+  EXPECT_THROW(statistics::HolmAdjust(std::vector<double>{1.2}), InternalError);
+  EXPECT_THROW(statistics::HolmAdjust(std::vector<double>{std::numeric_limits<double>::quiet_NaN()}),
+               InternalError);
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -10,11 +10,12 @@
 #include "studies/metrics/definitions.h"
 #include "studies/paper/claims.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 double Printed(const Cell& cell) {
-  const auto paper = FindPaperValue(PaperClaims(), cell.arm, MetricDefinitions()[cell.metric].name);
+  const auto paper =
+      paper::FindPaperValue(paper::PaperClaims(), cell.arm, metrics::MetricDefinitions()[cell.metric].name);
   return paper ? paper->value : std::nan("");
 }
 
@@ -24,14 +25,16 @@ bool AllPrinted(const Expression& expression) {
   return true;
 }
 
-bool IsJudgedByExpression(const Claim& claim) { return claim.kind != "setup" && claim.unmeasured.empty(); }
+bool IsJudgedByExpression(const paper::Claim& claim) {
+  return claim.kind != "setup" && claim.unmeasured.empty();
+}
 
-Expression Parse(const Claim& claim) {
+Expression Parse(const paper::Claim& claim) {
   return ParseExpression(claim.comparison.empty() ? claim.strategy : claim.comparison, claim.metric);
 }
 
 TEST(PaperArithmeticTest, EveryClaimParses) {
-  for (const Claim& claim : PaperClaims()) {
+  for (const paper::Claim& claim : paper::PaperClaims()) {
     if (!IsJudgedByExpression(claim)) continue;
     const Expression expression = Parse(claim);
     EXPECT_EQ(expression.is_quantity, claim.kind != "order") << claim.id;
@@ -41,7 +44,7 @@ TEST(PaperArithmeticTest, EveryClaimParses) {
 
 TEST(PaperArithmeticTest, EveryOrderHoldsInThePapersNumbers) {
   int checked = 0;
-  for (const Claim& claim : PaperClaims()) {
+  for (const paper::Claim& claim : paper::PaperClaims()) {
     if (claim.kind != "order" || !IsJudgedByExpression(claim)) continue;
     const Expression expression = Parse(claim);
     if (!AllPrinted(expression)) continue;
@@ -54,11 +57,11 @@ TEST(PaperArithmeticTest, EveryOrderHoldsInThePapersNumbers) {
 
 TEST(PaperArithmeticTest, EveryComparisonFollowsFromThePapersNumbers) {
   int checked = 0;
-  for (const Claim& claim : PaperClaims()) {
+  for (const paper::Claim& claim : paper::PaperClaims()) {
     if (claim.kind != "ratio" || !AllPrinted(Parse(claim))) continue;
     ++checked;
     const double value = ValueOf(Parse(claim).quantity, Printed);
-    const PaperValue paper = *PaperValueOf(claim);
+    const paper::PaperValue paper = *paper::PaperValueOf(claim);
     // Half a unit of rounding in the ratio, and what 21.33 for 21.44 kJ makes of it.
     const bool follows = std::abs(value - paper.value) <= paper.half_unit + 0.36;
     EXPECT_EQ(follows, claim.inconsistent.empty()) << claim.id << ' ' << value;
@@ -68,7 +71,7 @@ TEST(PaperArithmeticTest, EveryComparisonFollowsFromThePapersNumbers) {
 
 TEST(PaperArithmeticTest, StrategiesAreArms) {
   const std::set<std::string> arms(StudyArms().begin(), StudyArms().end());
-  for (const Claim& claim : PaperClaims()) {
+  for (const paper::Claim& claim : paper::PaperClaims()) {
     if (claim.kind == "setup") continue;
     std::istringstream words(claim.strategy);
     for (std::string arm; words >> arm;) EXPECT_EQ(arms.count(arm), 1u) << claim.id << ' ' << arm;
@@ -82,9 +85,9 @@ TEST(PaperArithmeticTest, InconsistenciesAreReal) {
   EXPECT_EQ(std::lround((1 - 0.9718) * 850), 24);
   EXPECT_NEAR(100 * (1 - 10.26 / 25.32), 59.5, 0.05);
   int marked = 0;
-  for (const Claim& claim : PaperClaims()) marked += claim.inconsistent.empty() ? 0 : 1;
+  for (const paper::Claim& claim : paper::PaperClaims()) marked += claim.inconsistent.empty() ? 0 : 1;
   EXPECT_EQ(marked, 6);
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::claims

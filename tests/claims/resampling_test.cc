@@ -7,11 +7,11 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 TEST(ResamplerTest, MissionsStayWithinTheirNetworks) {
-  const Resampler resampler({0, 1, 1, 0, 2, 1}, 3);
+  const statistics::Resampler resampler({0, 1, 1, 0, 2, 1}, 3);
   std::vector<int> counts;
   std::vector<int> seen(6, 0);
   for (int b = 0; b < 200; ++b) {
@@ -27,7 +27,7 @@ TEST(ResamplerTest, MissionsStayWithinTheirNetworks) {
 }
 
 TEST(ResamplerTest, NetworksAreDrawnWithReplacement) {
-  const Resampler resampler({0, 1, 2, 3, 4}, 5);
+  const statistics::Resampler resampler({0, 1, 2, 3, 4}, 5);
   std::vector<int> counts;
   int repeated = 0;
   for (int b = 0; b < 200; ++b) {
@@ -39,7 +39,7 @@ TEST(ResamplerTest, NetworksAreDrawnWithReplacement) {
 }
 
 TEST(ResamplerTest, SameNumberSameDraws) {
-  const Resampler one({0, 0, 0, 1, 1, 1, 1}, 2), two({0, 0, 0, 1, 1, 1, 1}, 2);
+  const statistics::Resampler one({0, 0, 0, 1, 1, 1, 1}, 2), two({0, 0, 0, 1, 1, 1, 1}, 2);
   std::vector<int> a, b, c;
   one.DrawMissions(7, a), two.DrawMissions(8, b), two.DrawMissions(7, c);
   EXPECT_EQ(a, c);
@@ -47,8 +47,8 @@ TEST(ResamplerTest, SameNumberSameDraws) {
 }
 
 TEST(ResamplerTest, UnitsBelongToAGroup) {
-  EXPECT_THROW(Resampler({0, 2}, 2), InternalError);
-  EXPECT_THROW(Resampler({-1}, 2), InternalError);
+  EXPECT_THROW(statistics::Resampler({0, 2}, 2), InternalError);
+  EXPECT_THROW(statistics::Resampler({-1}, 2), InternalError);
 }
 
 // 0, 1, ..., 1000 around its middle.
@@ -59,8 +59,8 @@ std::vector<double> Ramp(double width) {
 }
 
 TEST(UncertaintyTest, OverMissionsItIsThePercentiles) {
-  const Resampled number{10, Ramp(4), {}, 1};
-  const Uncertainty u = UncertaintyOf(number);
+  const statistics::Resampled number{10, Ramp(4), {}, 1};
+  const statistics::Uncertainty u = statistics::UncertaintyOf(number);
   EXPECT_NEAR(u.lo, 8.1, 1e-9);
   EXPECT_NEAR(u.hi, 11.9, 1e-9);
   EXPECT_NEAR(u.sd_missions, 4 / std::sqrt(12.0), 0.01);
@@ -71,14 +71,15 @@ TEST(UncertaintyTest, OverMissionsItIsThePercentiles) {
 TEST(UncertaintyTest, OverNetworksItIsStudents) {
   std::vector<double> networks;
   for (int i = 0; i < 5000; ++i) networks.push_back(i % 2 == 0 ? 9 : 11);
-  const Uncertainty u = UncertaintyOf({10, Ramp(0.4), networks, 3});
+  const statistics::Uncertainty u = statistics::UncertaintyOf({10, Ramp(0.4), networks, 3});
   EXPECT_NEAR(u.sd_networks, std::sqrt(1.5), 1e-3);
   EXPECT_NEAR(u.hi - 10, 4.30265 * std::sqrt(1.5), 1e-3);
   EXPECT_NEAR(10 - u.lo, 4.30265 * std::sqrt(1.5), 1e-3);
 }
 
 TEST(UncertaintyTest, NetworksThatAgreeByAccidentNarrowNothing) {
-  const Uncertainty u = UncertaintyOf({10, Ramp(4), std::vector<double>(1000, 10.0), 5});
+  const statistics::Uncertainty u =
+      statistics::UncertaintyOf({10, Ramp(4), std::vector<double>(1000, 10.0), 5});
   EXPECT_NEAR(u.lo, 8.1, 1e-9);
   EXPECT_NEAR(u.hi, 11.9, 1e-9);
 }
@@ -86,39 +87,39 @@ TEST(UncertaintyTest, NetworksThatAgreeByAccidentNarrowNothing) {
 TEST(UncertaintyTest, MissingResamplesGiveNone) {
   std::vector<double> most_missing(1000, std::nan(""));
   for (int i = 0; i < 400; ++i) most_missing[static_cast<std::size_t>(i)] = i;
-  EXPECT_TRUE(std::isnan(UncertaintyOf({10, most_missing, {}, 1}).lo));
-  EXPECT_TRUE(std::isnan(UncertaintyOf({10, {}, {}, 1}).hi));
-  EXPECT_TRUE(std::isnan(UncertaintyOf({std::nan(""), Ramp(1), {}, 1}).lo));
-  const Resampled nothing{10, {}, {}, 1};
-  const Sides sides = TestAgainst(nothing, UncertaintyOf(nothing), 0);
+  EXPECT_TRUE(std::isnan(statistics::UncertaintyOf({10, most_missing, {}, 1}).lo));
+  EXPECT_TRUE(std::isnan(statistics::UncertaintyOf({10, {}, {}, 1}).hi));
+  EXPECT_TRUE(std::isnan(statistics::UncertaintyOf({std::nan(""), Ramp(1), {}, 1}).lo));
+  const statistics::Resampled nothing{10, {}, {}, 1};
+  const statistics::Sides sides = statistics::TestAgainst(nothing, statistics::UncertaintyOf(nothing), 0);
   EXPECT_EQ(sides.above, 1);
   EXPECT_EQ(sides.below, 1);
 }
 
 TEST(SidesTest, TwiceTheTailOfTheWiderLevel) {
-  const Resampled number{10, Ramp(4), {}, 1};
-  const Uncertainty u = UncertaintyOf(number);
+  const statistics::Resampled number{10, Ramp(4), {}, 1};
+  const statistics::Uncertainty u = statistics::UncertaintyOf(number);
   // 1.96 standard deviations below the number: 2.5 % twice.
-  EXPECT_NEAR(TestAgainst(number, u, 10 - 1.959964 * u.sd_missions).above, 0.05, 1e-6);
-  EXPECT_EQ(TestAgainst(number, u, 10 - 1.959964 * u.sd_missions).below, 1);
-  EXPECT_NEAR(TestAgainst(number, u, 10 + 1.959964 * u.sd_missions).below, 0.05, 1e-6);
-  EXPECT_EQ(TestAgainst(number, u, 10).above, 1);
+  EXPECT_NEAR(statistics::TestAgainst(number, u, 10 - 1.959964 * u.sd_missions).above, 0.05, 1e-6);
+  EXPECT_EQ(statistics::TestAgainst(number, u, 10 - 1.959964 * u.sd_missions).below, 1);
+  EXPECT_NEAR(statistics::TestAgainst(number, u, 10 + 1.959964 * u.sd_missions).below, 0.05, 1e-6);
+  EXPECT_EQ(statistics::TestAgainst(number, u, 10).above, 1);
   // Student's t of 4 degrees: 2.776 for 5 %.
   std::vector<double> networks;
   for (int i = 0; i < 5000; ++i) networks.push_back(i % 2 == 0 ? 8 : 12);
-  const Resampled wide{10, Ramp(4), networks, 5};
-  const Uncertainty w = UncertaintyOf(wide);
-  EXPECT_NEAR(TestAgainst(wide, w, 10 - 2.776445 * w.sd_networks).above, 0.05, 1e-6);
+  const statistics::Resampled wide{10, Ramp(4), networks, 5};
+  const statistics::Uncertainty w = statistics::UncertaintyOf(wide);
+  EXPECT_NEAR(statistics::TestAgainst(wide, w, 10 - 2.776445 * w.sd_networks).above, 0.05, 1e-6);
 }
 
 // By construction ("always offloads"): no spread at all.
 TEST(SidesTest, WithoutSpreadTheSignDecides) {
-  const Resampled constant{100, std::vector<double>(2000, 100.0), {}, 1};
-  const Uncertainty u = UncertaintyOf(constant);
-  EXPECT_EQ(TestAgainst(constant, u, 50).above, 0);
-  EXPECT_EQ(TestAgainst(constant, u, 50).below, 1);
-  EXPECT_EQ(TestAgainst(constant, u, 100).above, 1);
+  const statistics::Resampled constant{100, std::vector<double>(2000, 100.0), {}, 1};
+  const statistics::Uncertainty u = statistics::UncertaintyOf(constant);
+  EXPECT_EQ(statistics::TestAgainst(constant, u, 50).above, 0);
+  EXPECT_EQ(statistics::TestAgainst(constant, u, 50).below, 1);
+  EXPECT_EQ(statistics::TestAgainst(constant, u, 100).above, 1);
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -7,7 +7,7 @@
 #include "engine/core/random.h"
 #include "studies/metrics/arm.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 
 struct SyntheticArm {
   std::string name;
@@ -28,14 +28,14 @@ inline double LuckOf(int network, int networks) {
   return networks < 2 ? 0 : 2.0 * network / (networks - 1) - 1;
 }
 
-inline ArmData MakeArm(const SyntheticArm& wanted, const SyntheticDesign& design = {}) {
-  ArmData arm{.stage = "online", .name = wanted.name, .missions = {}};
+inline metrics::ArmData MakeArm(const SyntheticArm& wanted, const SyntheticDesign& design = {}) {
+  metrics::ArmData arm{.stage = "online", .name = wanted.name, .missions = {}};
   std::uint64_t seed = 5;
   for (const char c : wanted.name) seed = 31 * seed + static_cast<unsigned char>(c);
   for (int i = 0; i < design.missions; ++i) {
     Stream shared(1, static_cast<std::uint32_t>(i), Purpose::kScenario);
     Stream own(seed, static_cast<std::uint32_t>(i), Purpose::kScenario);
-    MissionRecord m;
+    mission::MissionRecord m;
     m.scenario = i;
     m.site = i % 14, m.base_station = i % design.places / 14;
     const int network = i / design.places % design.networks;
@@ -46,11 +46,11 @@ inline ArmData MakeArm(const SyntheticArm& wanted, const SyntheticDesign& design
     m.duration_s = m.total_j / 130;
     m.timesteps = 10, m.full_local = 10;
     m.reliable_timesteps = 2, m.reliable_scs_sum = 2 * wanted.reliable_scs;
-    m.outcome = static_cast<std::int64_t>(own.Uniform() < wanted.failures ? Outcome::kFalsePositive
-                                                                          : Outcome::kSuccess);
+    m.outcome = static_cast<std::int64_t>(own.Uniform() < wanted.failures ? mission::Outcome::kFalsePositive
+                                                                          : mission::Outcome::kSuccess);
     arm.missions.push_back(m);
   }
   return arm;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::claims

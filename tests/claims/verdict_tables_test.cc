@@ -9,13 +9,14 @@
 #include "tests/claims/synthetic_run.h"
 #include "tests/studies/csv_rows.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
 const ClaimStudy& Study() {
-  static const ClaimStudy study = JudgeClaims(
-      PaperClaims(), std::vector<ArmData>{MakeArm({"ed3r-75", 20, 0.02}), MakeArm({"ecd2r", 28, 0.05}),
-                                          MakeArm({"rbs", 35, 0.2, 0, false})});
+  static const ClaimStudy study =
+      JudgeClaims(paper::PaperClaims(),
+                  std::vector<metrics::ArmData>{MakeArm({"ed3r-75", 20, 0.02}), MakeArm({"ecd2r", 28, 0.05}),
+                                                MakeArm({"rbs", 35, 0.2, 0, false})});
   return study;
 }
 
@@ -29,7 +30,7 @@ std::string LineOf(const std::string& text, const std::string& id) {
 TEST(VerdictTextTest, FitsTheTerminal) {
   std::istringstream lines(VerdictText(Study()));
   for (std::string line; std::getline(lines, line);) {
-    EXPECT_LE(DisplayWidth(line), kTerminalWidth) << line;
+    EXPECT_LE(tables::DisplayWidth(line), tables::kTerminalWidth) << line;
     EXPECT_FALSE(line.ends_with(' ')) << line;
   }
 }
@@ -46,9 +47,10 @@ TEST(VerdictTextTest, SaysWhatIsClaimedAndWhatCameOut) {
 }
 
 TEST(VerdictTextTest, AnOppositeThatIsSignificantShowsItsOwnP) {
-  const ClaimStudy study = JudgeClaims(
-      PaperClaims(), std::vector<ArmData>{MakeArm({"ed3r-75", 45, 0.02}), MakeArm({"ecd2r", 28, 0.05}),
-                                          MakeArm({"rbs", 35, 0.2, 0, false})});
+  const ClaimStudy study =
+      JudgeClaims(paper::PaperClaims(),
+                  std::vector<metrics::ArmData>{MakeArm({"ed3r-75", 45, 0.02}), MakeArm({"ecd2r", 28, 0.05}),
+                                                MakeArm({"rbs", 35, 0.2, 0, false})});
   const std::string line = LineOf(VerdictText(study), "C140");
   EXPECT_NE(line.find("! "), std::string::npos) << line;
   EXPECT_NE(line.find("differs"), std::string::npos) << line;
@@ -70,8 +72,8 @@ TEST(VerdictTextTest, DifferencesThatTheLuckOfOneNetworkMayExplainAreMarked) {
   const auto line_of = [](double energy_kj, double luck) {
     SyntheticDesign many;
     many.missions = 4200;
-    const ClaimStudy study =
-        JudgeClaims(PaperClaims(), std::vector<ArmData>{MakeArm({"ed3r-75", energy_kj, 0, luck}, many)});
+    const ClaimStudy study = JudgeClaims(
+        paper::PaperClaims(), std::vector<metrics::ArmData>{MakeArm({"ed3r-75", energy_kj, 0, luck}, many)});
     return LineOf(VerdictText(study), "C104");  // 21.44 kJ
   };
   // Networks within 4 % of 23.2 kJ: one more lies within +- 2.6 kJ, a band of less than four margins of 2.1 kJ.
@@ -93,12 +95,13 @@ TEST(VerdictTextTest, WhatIsNotThereTakesOneEntryPerReason) {
 TEST(VerdictTextTest, OneNetworkIsSaid) {
   SyntheticDesign single;
   single.networks = 1;
-  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20}, single)};
-  EXPECT_NE(VerdictText(JudgeClaims(PaperClaims(), arms)).find("flew with one"), std::string::npos);
+  const std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 20}, single)};
+  EXPECT_NE(VerdictText(JudgeClaims(paper::PaperClaims(), arms)).find("flew with one"), std::string::npos);
 }
 
 TEST(VerdictTextTest, NothingForOtherStudies) {
-  const ClaimStudy other = JudgeClaims(PaperClaims(), std::vector<ArmData>{MakeArm({"heavy", 20})});
+  const ClaimStudy other =
+      JudgeClaims(paper::PaperClaims(), std::vector<metrics::ArmData>{MakeArm({"heavy", 20})});
   EXPECT_EQ(VerdictText(other), "");
   EXPECT_TRUE(VerdictJson(other).empty());
   EXPECT_EQ(CsvRows(VerdictCsv(other)).size(), 1u);
@@ -107,7 +110,7 @@ TEST(VerdictTextTest, NothingForOtherStudies) {
 TEST(VerdictDataTest, JsonAndCsvAgree) {
   const auto json = VerdictJson(Study());
   const std::vector<CsvRow> rows = CsvRows(VerdictCsv(Study()));
-  ASSERT_EQ(json.size(), PaperClaims().size());
+  ASSERT_EQ(json.size(), paper::PaperClaims().size());
   ASSERT_EQ(rows.size(), json.size() + 1);
   for (std::size_t i = 0; i < json.size(); ++i) {
     EXPECT_EQ(json[i].at("id"), rows[i + 1][0]);
@@ -123,11 +126,11 @@ TEST(VerdictDataTest, JsonAndCsvAgree) {
 }
 
 TEST(ClaimInWordsTest, CutsWhatDoesNotFit) {
-  for (const Claim& claim : PaperClaims()) {
-    EXPECT_LE(DisplayWidth(ClaimInWords(claim, 30)), 30) << claim.id;
+  for (const paper::Claim& claim : paper::PaperClaims()) {
+    EXPECT_LE(tables::DisplayWidth(ClaimInWords(claim, 30)), 30) << claim.id;
     EXPECT_FALSE(ClaimInWords(claim, 30).empty()) << claim.id;
   }
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::claims

@@ -10,11 +10,11 @@
 #include "engine/core/check.h"
 #include "tests/claims/synthetic_run.h"
 
-namespace ed3r {
+namespace ed3r::claims {
 namespace {
 
-Claim Value(const std::string& arm, const std::string& metric, const std::string& value,
-            const std::string& unit) {
+paper::Claim Value(const std::string& arm, const std::string& metric, const std::string& value,
+                   const std::string& unit) {
   return {.id = "V",
           .where = "",
           .strategy = arm,
@@ -31,43 +31,43 @@ Claim Value(const std::string& arm, const std::string& metric, const std::string
           .note = ""};
 }
 
-Claim Energy(const std::string& arm, const std::string& value) {
+paper::Claim Energy(const std::string& arm, const std::string& value) {
   return Value(arm, "total_energy_kj", value, "kJ");
 }
 
-Claim Order(const std::string& comparison, double tolerance = 0) {
-  Claim claim = Energy("", "");
+paper::Claim Order(const std::string& comparison, double tolerance = 0) {
+  paper::Claim claim = Energy("", "");
   claim.kind = "order", claim.comparison = comparison, claim.tolerance = tolerance;
   return claim;
 }
 
-Claim Reduction(const std::string& comparison, const std::string& percent) {
-  Claim claim = Order("100*(1 - " + comparison + ")");
+paper::Claim Reduction(const std::string& comparison, const std::string& percent) {
+  paper::Claim claim = Order("100*(1 - " + comparison + ")");
   claim.kind = "ratio", claim.paper_value = percent, claim.unit = "% reduction";
   return claim;
 }
 
-JudgedClaim JudgeOne(const Claim& claim, const std::vector<ArmData>& arms) {
+JudgedClaim JudgeOne(const paper::Claim& claim, const std::vector<metrics::ArmData>& arms) {
   return JudgeClaims({claim}, arms).claims.front();
 }
 
-Verdict VerdictOf(const Claim& claim, const std::vector<ArmData>& arms) {
+Verdict VerdictOf(const paper::Claim& claim, const std::vector<metrics::ArmData>& arms) {
   return JudgeOne(claim, arms).all.verdict;
 }
 
-std::vector<ArmData> ThreeArms() {
+std::vector<metrics::ArmData> ThreeArms() {
   return {MakeArm({"ed3r-75", 20}), MakeArm({"ecd2r", 25}), MakeArm({"rbs", 35, 0.2, 0, false})};
 }
 
 // Many missions, little luck: known well.
-std::vector<ArmData> WellKnown() {
+std::vector<metrics::ArmData> WellKnown() {
   SyntheticDesign many;
   many.missions = 4200;
   return {MakeArm({"ed3r-75", 20}, many), MakeArm({"rbs", 35, 0.2, 0, false}, many)};
 }
 
 TEST(VerdictsTest, NumbersOfOneArm) {
-  const std::vector<ArmData> arms = WellKnown();
+  const std::vector<metrics::ArmData> arms = WellKnown();
   const Judgement same = JudgeOne(Energy("ed3r-75", "20.1"), arms).all;
   EXPECT_EQ(same.verdict, Verdict::kEquivalent);
   EXPECT_NEAR(same.margin, 2.01, 1e-9);
@@ -91,8 +91,8 @@ TEST(VerdictsTest, ThePapersOwnChanceCounts) {
 }
 
 TEST(VerdictsTest, ToleranceIsTheMarginWhereWordsAreVague) {
-  const std::vector<ArmData> arms = ThreeArms();
-  Claim claim = Energy("ed3r-75", "24");
+  const std::vector<metrics::ArmData> arms = ThreeArms();
+  paper::Claim claim = Energy("ed3r-75", "24");
   EXPECT_EQ(VerdictOf(claim, arms), Verdict::kDiffers);
   claim.tolerance = 6;
   EXPECT_EQ(VerdictOf(claim, arms), Verdict::kEquivalent);
@@ -104,9 +104,9 @@ TEST(VerdictsTest, ToleranceIsTheMarginWhereWordsAreVague) {
 TEST(VerdictsTest, NumbersWithoutAnInterval) {
   SyntheticDesign design;
   design.missions = 850;  // as many as in the paper
-  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20}, design)};
+  const std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 20}, design)};
   EXPECT_EQ(VerdictOf(Value("ed3r-75", "duration_max_min", "4", "min"), ThreeArms()), Verdict::kNotMeasured);
-  Claim claim =
+  paper::Claim claim =
       Value("ed3r-75", "duration_max_min", "3.3", "min");  // 20 kJ x 1.5 at 130 W, and noise: 3.9 or more
   EXPECT_EQ(VerdictOf(claim, arms), Verdict::kDiffers);
   claim.tolerance = 2;
@@ -114,20 +114,21 @@ TEST(VerdictsTest, NumbersWithoutAnInterval) {
 }
 
 TEST(VerdictsTest, AWideIntervalNeverMakesANumberAgree) {
-  const std::vector<ArmData> lucky = {MakeArm({"ed3r-75", 20, 0, 0.9})};
+  const std::vector<metrics::ArmData> lucky = {MakeArm({"ed3r-75", 20, 0, 0.9})};
   EXPECT_EQ(VerdictOf(Energy("ed3r-75", "20"), lucky), Verdict::kImprecise);
   EXPECT_EQ(VerdictOf(Energy("ed3r-75", "80"), lucky), Verdict::kDiffers);
 }
 
 TEST(VerdictsTest, SharesOfMissionsArePercentagesToo) {
-  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 100, 0, 0.3})};  // 10 minutes take 78 kJ
+  const std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 100, 0, 0.3})};  // 10 minutes take 78 kJ
   const JudgedClaim judged = JudgeOne(Value("ed3r-75", "within_10min_pct", "30", "% of missions"), arms);
   EXPECT_EQ(judged.all.margin, 5.0);
   EXPECT_EQ(judged.all.verdict, Verdict::kImprecise) << judged.all.why;
 }
 
 TEST(VerdictsTest, OneNetworkOfThePaperMayDifferFromOurMean) {
-  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20, 0, 0.2}), MakeArm({"rbs", 20, 0, 0, false})};
+  const std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 20, 0, 0.2}),
+                                              MakeArm({"rbs", 20, 0, 0, false})};
   // Networks of 16, 18, 20, 22, 24 kJ: s = 3.16; one more lies within t(4) x 3.16 x sqrt(1 + 1/5) = 9.6 of their mean.
   for (const auto& [paper, luck] :
        {std::tuple("26", Luck::kTooWide), std::tuple("28", Luck::kTooWide), std::tuple("31", Luck::kNone)}) {
@@ -136,28 +137,28 @@ TEST(VerdictsTest, OneNetworkOfThePaperMayDifferFromOurMean) {
     EXPECT_EQ(judged.luck, luck) << paper;  // 19 kJ of band against margins of 2.6 to 3.1
   }
   // Networks of 19.2 to 20.8 kJ: a band of 3.9 and what 56 missions of a network leave, less than four margins of 2.3.
-  const std::vector<ArmData> alike = {MakeArm({"ed3r-75", 20, 0, 0.04})};
+  const std::vector<metrics::ArmData> alike = {MakeArm({"ed3r-75", 20, 0, 0.04})};
   EXPECT_EQ(JudgeOne(Energy("ed3r-75", "23"), alike).luck, Luck::kNone);
   EXPECT_EQ(JudgeOne(Energy("rbs", "22"), arms).luck, Luck::kUnknown) << "no network, no luck of training";
 }
 
 TEST(VerdictsTest, ValuesThatDoNotExist) {
-  const std::vector<ArmData> arms = ThreeArms();  // no network predicts anything in them
+  const std::vector<metrics::ArmData> arms = ThreeArms();  // no network predicts anything in them
   EXPECT_EQ(VerdictOf(Value("rbs", "lf_accuracy_pct", "n/a", ""), arms), Verdict::kReproduced);
   EXPECT_EQ(VerdictOf(Value("rbs", "lf_accuracy_pct", "75", "%"), arms), Verdict::kNotMeasured);
   EXPECT_EQ(VerdictOf(Value("rbs", "msr_pct", "n/a", ""), arms), Verdict::kDiffers);
 }
 
 TEST(VerdictsTest, Orders) {
-  const std::vector<ArmData> arms = ThreeArms();
+  const std::vector<metrics::ArmData> arms = ThreeArms();
   EXPECT_EQ(VerdictOf(Order("ed3r-75 < ecd2r < rbs"), arms), Verdict::kDirectionHolds);
   EXPECT_EQ(VerdictOf(Order("rbs < ed3r-75"), arms), Verdict::kDiffers);
   EXPECT_EQ(VerdictOf(Order("ed3r-75 < ecd2r; rbs < ecd2r"), arms), Verdict::kDiffers);
 }
 
 TEST(VerdictsTest, AnOrderIsAsCertainAsItsLeastCertainPart) {
-  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20}), MakeArm({"ecd2r", 20.6}),
-                                     MakeArm({"rbs", 35})};
+  const std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 20}), MakeArm({"ecd2r", 20.6}),
+                                              MakeArm({"rbs", 35})};
   const Judgement judged = JudgeOne(Order("ed3r-75 < ecd2r < rbs"), arms).all;
   EXPECT_EQ(judged.p, JudgeOne(Order("ed3r-75 < ecd2r"), arms).all.p);
   EXPECT_NEAR(judged.ours, 0.6, 0.3);
@@ -165,8 +166,8 @@ TEST(VerdictsTest, AnOrderIsAsCertainAsItsLeastCertainPart) {
 }
 
 TEST(VerdictsTest, OfPartsThatLeanTheOtherWayTheSurerIsShown) {
-  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20}), MakeArm({"ecd2r", 19.8}),
-                                     MakeArm({"rbs", 10})};
+  const std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 20}), MakeArm({"ecd2r", 19.8}),
+                                              MakeArm({"rbs", 10})};
   const Judgement judged = JudgeOne(Order("ed3r-75 < ecd2r, rbs"), arms).all;
   EXPECT_NEAR(judged.ours, -10, 1);
   EXPECT_NE(judged.why.find("ed3r-75 < rbs"), std::string::npos) << judged.why;
@@ -175,7 +176,7 @@ TEST(VerdictsTest, OfPartsThatLeanTheOtherWayTheSurerIsShown) {
 TEST(VerdictsTest, AnOrderWithItsPrintedSizesIsReproduced) {
   SyntheticDesign many;
   many.missions = 4200;
-  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20}, many), MakeArm({"ecd2r", 25}, many)};
+  const std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 20}, many), MakeArm({"ecd2r", 25}, many)};
   EXPECT_EQ(JudgeClaims({Order("ed3r-75 < ecd2r"), Energy("ed3r-75", "20"), Energy("ecd2r", "25")}, arms)
                 .claims[0]
                 .all.verdict,
@@ -187,7 +188,7 @@ TEST(VerdictsTest, AnOrderWithItsPrintedSizesIsReproduced) {
 }
 
 TEST(VerdictsTest, TiesAreNotDecidable) {
-  ArmData twin = MakeArm({"ed3r-75", 20});
+  metrics::ArmData twin = MakeArm({"ed3r-75", 20});
   twin.name = "ecd2r";
   const JudgedClaim judged = JudgeOne(Order("ed3r-75 < ecd2r"), {MakeArm({"ed3r-75", 20}), twin});
   EXPECT_EQ(judged.all.verdict, Verdict::kNotDecidable);
@@ -197,33 +198,34 @@ TEST(VerdictsTest, TiesAreNotDecidable) {
 }
 
 TEST(VerdictsTest, Similarities) {
-  const std::vector<ArmData> arms = ThreeArms();
+  const std::vector<metrics::ArmData> arms = ThreeArms();
   EXPECT_EQ(VerdictOf(Order("ed3r-75 ~ ecd2r", 9), arms), Verdict::kReproduced);
   EXPECT_EQ(VerdictOf(Order("ed3r-75 ~ ecd2r", 1), arms), Verdict::kDiffers);
   EXPECT_EQ(VerdictOf(Order("ed3r-75 ~ ecd2r", 5), arms), Verdict::kNotDecidable);
 }
 
 TEST(VerdictsTest, Comparisons) {
-  const std::vector<ArmData> arms = ThreeArms();
+  const std::vector<metrics::ArmData> arms = ThreeArms();
   EXPECT_EQ(VerdictOf(Reduction("ed3r-75 / ecd2r", "20"), arms), Verdict::kEquivalent);
   EXPECT_EQ(VerdictOf(Reduction("ed3r-75 / ecd2r", "60"), arms), Verdict::kDirectionHolds);
   EXPECT_EQ(VerdictOf(Reduction("ecd2r / ed3r-75", "20"), arms), Verdict::kDiffers);
   // Luck of 30 % either way: the interval holds 20 % and much else.
-  const std::vector<ArmData> lucky = {MakeArm({"ed3r-75", 20, 0, 0.3}), MakeArm({"ecd2r", 25})};
+  const std::vector<metrics::ArmData> lucky = {MakeArm({"ed3r-75", 20, 0, 0.3}), MakeArm({"ecd2r", 25})};
   EXPECT_EQ(VerdictOf(Reduction("ed3r-75 / ecd2r", "20"), lucky), Verdict::kImprecise);
 }
 
 // A reduction that the paper prints and an increase that is certain: within the margin or not, that is no agreement.
 TEST(VerdictsTest, AComparisonWhoseOppositeIsCertainDiffers) {
   const SyntheticDesign quiet{.missions = 4200, .networks = 1, .places = 28, .own_noise = 0.01};
-  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20.4}, quiet), MakeArm({"ecd2r", 20}, quiet)};
+  const std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 20.4}, quiet),
+                                              MakeArm({"ecd2r", 20}, quiet)};
   const Judgement judged = JudgeOne(Reduction("ed3r-75 / ecd2r", "1"), arms).all;
   EXPECT_EQ(judged.verdict, Verdict::kDiffers);
   EXPECT_NE(judged.why.find("the opposite is significant"), std::string::npos) << judged.why;
 }
 
 TEST(VerdictsTest, PointsArePercentages) {
-  Claim claim = Reduction("ed3r-75 / rbs", "20");
+  paper::Claim claim = Reduction("ed3r-75 / rbs", "20");
   claim.metric = "msr_pct", claim.comparison = "ed3r-75 - rbs", claim.unit = "points";
   EXPECT_EQ(JudgeOne(claim, ThreeArms()).all.margin, 5.0);
 }
@@ -233,7 +235,7 @@ TEST(VerdictsTest, AnOrderIsReproducedByItsDifferences) {
   SyntheticDesign many;
   many.missions = 4200;
   many.own_noise = 0.01;
-  const std::vector<ArmData> arms = {MakeArm({"ed3r-75", 20}, many), MakeArm({"ecd2r", 25}, many)};
+  const std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 20}, many), MakeArm({"ecd2r", 25}, many)};
   const auto verdict = [&](const std::string& ecd2r) {
     return JudgeClaims({Order("ed3r-75 < ecd2r"), Energy("ed3r-75", "20"), Energy("ecd2r", ecd2r)}, arms)
         .claims[0]
@@ -244,7 +246,7 @@ TEST(VerdictsTest, AnOrderIsReproducedByItsDifferences) {
 }
 
 TEST(VerdictsTest, ThePapersChanceInSharesIsThatOfItsOwnMissions) {
-  const std::vector<ArmData> arms = ThreeArms();
+  const std::vector<metrics::ArmData> arms = ThreeArms();
   const Judgement all = JudgeOne(Value("rbs", "msr_pct", "76.82", "%"), arms).all;
   EXPECT_NEAR(all.paper_sd, 100 * std::sqrt(0.7682 * 0.2318 / 850), 1e-9);
   const Judgement p85 = JudgeOne(Value("rbs-p85", "msr_pct", "73.44", "%"), arms).all;
@@ -259,10 +261,10 @@ TEST(VerdictsTest, PairingMakesSmallDifferencesCertain) {
   // Hardness varies by a third between missions, an arm's own noise is small: 1 % of difference shows only in
   // pairs.
   const SyntheticDesign quiet{.missions = 280, .networks = 1, .places = 28, .own_noise = 0.01};
-  const ArmData first = MakeArm({"ed3r-75", 20}, quiet);
-  ArmData second = MakeArm({"ecd2r", 20.2}, quiet);
+  const metrics::ArmData first = MakeArm({"ed3r-75", 20}, quiet);
+  metrics::ArmData second = MakeArm({"ecd2r", 20.2}, quiet);
   EXPECT_EQ(VerdictOf(Order("ed3r-75 < ecd2r"), {first, second}), Verdict::kDirectionHolds);
-  for (MissionRecord& mission : second.missions)
+  for (mission::MissionRecord& mission : second.missions)
     mission.scenario += 10000;  // other scenarios: nothing is shared
   EXPECT_EQ(VerdictOf(Order("ed3r-75 < ecd2r"), {first, second}), Verdict::kNotDecidable);
 }
@@ -287,7 +289,7 @@ TEST(VerdictsTest, LuckOfTrainingUndoesWhatOneNetworkShows) {
 }
 
 TEST(VerdictsTest, ArmsWithoutNetworksKnowNoLuckOfTraining) {
-  const std::vector<ArmData> arms = ThreeArms();
+  const std::vector<metrics::ArmData> arms = ThreeArms();
   const Judgement rbs = JudgeOne(Energy("rbs-p85", "40"), arms).all;
   SyntheticDesign single;
   single.networks = 1;
@@ -298,7 +300,7 @@ TEST(VerdictsTest, ArmsWithoutNetworksKnowNoLuckOfTraining) {
 }
 
 TEST(VerdictsTest, P85GroupsAreTheLongestMissions) {
-  const std::vector<ArmData> arms = ThreeArms();
+  const std::vector<metrics::ArmData> arms = ThreeArms();
   const Judgement judged = JudgeOne(Energy("ed3r-p85", "28.5"), arms).all;
   EXPECT_EQ(judged.verdict, Verdict::kEquivalent);  // hardness 1.35 to 1.5
   EXPECT_NEAR(judged.ours, 28.5, 0.5);
@@ -318,7 +320,7 @@ TEST(VerdictsTest, SmallP85GroupsAreNotMeasured) {
 }
 
 TEST(VerdictsTest, Frontiers) {
-  std::vector<ArmData> arms;
+  std::vector<metrics::ArmData> arms;
   for (const char* name : {"ablation-1", "ablation-2", "ablation-3", "ablation-4", "ecd2r", "rbs"})
     arms.push_back(MakeArm({name, 40, 0.5}));
   arms.push_back(MakeArm({"ed3r-65", 10, 0.3}));
@@ -332,7 +334,7 @@ TEST(VerdictsTest, Frontiers) {
 }
 
 TEST(VerdictsTest, WhatThePaperContradictsIsNotHeldAgainstUs) {
-  Claim claim = Energy("ed3r-75", "30");
+  paper::Claim claim = Energy("ed3r-75", "30");
   claim.inconsistent = "it says 21 elsewhere";
   const Judgement judged = JudgeOne(claim, ThreeArms()).all;
   EXPECT_EQ(judged.verdict, Verdict::kPaperInconsistent);
@@ -341,7 +343,7 @@ TEST(VerdictsTest, WhatThePaperContradictsIsNotHeldAgainstUs) {
 }
 
 TEST(VerdictsTest, WhatIsNotThereIsNotMeasured) {
-  Claim never = Order("");
+  paper::Claim never = Order("");
   never.unmeasured = "a choice";
   EXPECT_EQ(JudgeOne(never, ThreeArms()).all.why, "a choice");
   const Judgement judged = JudgeOne(Order("ed3r-75 < ablation-1..2"), ThreeArms()).all;
@@ -351,35 +353,35 @@ TEST(VerdictsTest, WhatIsNotThereIsNotMeasured) {
 }
 
 TEST(VerdictsTest, EmptyArmsAndEmptyRuns) {
-  std::vector<ArmData> arms = ThreeArms();
+  std::vector<metrics::ArmData> arms = ThreeArms();
   arms[1].missions.clear();
   EXPECT_EQ(VerdictOf(Order("ed3r-75 < ecd2r"), arms), Verdict::kNotMeasured);
   EXPECT_EQ(VerdictOf(Order("ed3r-75 < rbs"), arms), Verdict::kDirectionHolds);
-  const ClaimStudy nothing = JudgeClaims(PaperClaims(), {});
+  const ClaimStudy nothing = JudgeClaims(paper::PaperClaims(), {});
   EXPECT_FALSE(nothing.HasArms());
-  EXPECT_EQ(nothing.claims.size(), PaperClaims().size());
+  EXPECT_EQ(nothing.claims.size(), paper::PaperClaims().size());
   // One mission has no interval: nothing is decided, nothing breaks.
   SyntheticDesign one;
   one.missions = 1;
-  const std::vector<ArmData> tiny = {MakeArm({"ed3r-75", 20}, one), MakeArm({"ecd2r", 90}, one)};
-  EXPECT_NO_THROW(JudgeClaims(PaperClaims(), tiny));
+  const std::vector<metrics::ArmData> tiny = {MakeArm({"ed3r-75", 20}, one), MakeArm({"ecd2r", 90}, one)};
+  EXPECT_NO_THROW(JudgeClaims(paper::PaperClaims(), tiny));
   const Judgement judged = JudgeOne(Energy("ed3r-75", "20"), tiny).all;
   EXPECT_EQ(judged.verdict, Verdict::kNotMeasured);
   EXPECT_NE(judged.why.find("too few missions"), std::string::npos) << judged.why;
 }
 
 TEST(VerdictsTest, RepeatedClaimsAreOneQuestion) {
-  const std::vector<ArmData> arms = ThreeArms();
-  const std::vector<Claim> once = {Order("ed3r-75 < ecd2r"), Order("ecd2r < rbs")};
-  std::vector<Claim> often = once;
+  const std::vector<metrics::ArmData> arms = ThreeArms();
+  const std::vector<paper::Claim> once = {Order("ed3r-75 < ecd2r"), Order("ecd2r < rbs")};
+  std::vector<paper::Claim> often = once;
   for (int i = 0; i < 50; ++i) often.push_back(once[0]);
   EXPECT_EQ(JudgeClaims(once, arms).claims[1].all.p_holm, JudgeClaims(often, arms).claims[1].all.p_holm);
 }
 
 TEST(VerdictsTest, RepeatedClaimsCountOnce) {
-  Claim again = Energy("ed3r-75", "30");
+  paper::Claim again = Energy("ed3r-75", "30");
   again.id = "W";
-  Claim other = Energy("ed3r-75", "31");
+  paper::Claim other = Energy("ed3r-75", "31");
   other.id = "X";
   const ClaimStudy study = JudgeClaims({Energy("ed3r-75", "30"), again, other}, ThreeArms());
   EXPECT_EQ(study.claims[1].repeats, "V");
@@ -389,7 +391,7 @@ TEST(VerdictsTest, RepeatedClaimsCountOnce) {
 }
 
 TEST(VerdictsTest, AnOrderReadFromTheOtherSideIsTheSameQuestion) {
-  Claim flipped = Order("rbs > ecd2r; total_energy_kj(ecd2r) > total_energy_kj(ed3r-75)");
+  paper::Claim flipped = Order("rbs > ecd2r; total_energy_kj(ecd2r) > total_energy_kj(ed3r-75)");
   flipped.id = "W";
   const ClaimStudy study =
       JudgeClaims({Order("ed3r-75 < ecd2r < rbs"), flipped, Order("rbs < ecd2r")}, ThreeArms());
@@ -407,15 +409,15 @@ TEST(VerdictsTest, ArmsOfOtherRotationsArePairedAndNamed) {
   other.places = 14;
   const ClaimStudy study =
       JudgeClaims({Order("ed3r-75 < ecd2r")},
-                  std::vector<ArmData>{MakeArm({"ed3r-75", 20}), MakeArm({"ecd2r", 25}, other)});
+                  std::vector<metrics::ArmData>{MakeArm({"ed3r-75", 20}), MakeArm({"ecd2r", 25}, other)});
   EXPECT_TRUE(study.networks_disagree);
   EXPECT_EQ(study.claims[0].all.verdict, Verdict::kDirectionHolds);
   EXPECT_FALSE(JudgeClaims({Order("ed3r-75 < ecd2r")}, ThreeArms()).networks_disagree);
 }
 
 TEST(VerdictsTest, AreTheSameEveryTime) {
-  const std::vector<ArmData> arms = ThreeArms();
-  const ClaimStudy a = JudgeClaims(PaperClaims(), arms), b = JudgeClaims(PaperClaims(), arms);
+  const std::vector<metrics::ArmData> arms = ThreeArms();
+  const ClaimStudy a = JudgeClaims(paper::PaperClaims(), arms), b = JudgeClaims(paper::PaperClaims(), arms);
   for (std::size_t i = 0; i < a.claims.size(); ++i) {
     EXPECT_EQ(a.claims[i].all.verdict, b.claims[i].all.verdict);
     if (!std::isnan(a.claims[i].all.lo)) {
@@ -425,4 +427,4 @@ TEST(VerdictsTest, AreTheSameEveryTime) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::claims

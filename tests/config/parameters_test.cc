@@ -41,10 +41,23 @@ TEST(ParametersTest, RefusalsNameKeyValueAndRange) {
   EXPECT_EQ(CanonicalText(config), CanonicalText(Config()));
 }
 
+TEST(ParametersTest, FilesAreWhatTheirDescriptionsCallSo) {
+  std::vector<std::string> files;
+  for (const ParameterInfo& parameter : Parameters())
+    if (parameter.is_file) files.push_back(parameter.key + " | " + parameter.or_else);
+  EXPECT_EQ(files, (std::vector<std::string>{"mission.world | ", "perception.detector.full | builtin",
+                                             "perception.detector.quantized | builtin",
+                                             "networks.rc | trained", "networks.robot | trained"}));
+}
+
 TEST(ParametersTest, RulesBetweenParameters) {
   Config config;
   config.agents.eta_int = 0.9;
   EXPECT_EQ(CheckParameters(config), "agents.eta_int: '0.9' is not allowed; at most agents.eta_min = 0.75");
+  config = Config();
+  config.sensing.lidar_rate_hz = 240;
+  EXPECT_EQ(CheckParameters(config),
+            "sensing.lidar_rate_hz: '240' is not allowed; at most mission.physics_hz = 120");
 }
 
 TEST(ParametersTest, CanonicalTextTellsConfigsApart) {

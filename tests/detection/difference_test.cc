@@ -8,7 +8,7 @@
 #include "engine/core/random.h"
 #include "studies/detection/scores.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 namespace {
 
 // Two detectors whose scores are normal, positives around +kShift, negatives around -kShift, standard deviation 1, of
@@ -243,4 +243,4 @@ TEST(DetectorDifference, DISABLED_PrintsTheTable) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::detection

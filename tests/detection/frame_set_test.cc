@@ -8,7 +8,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ TEST_F(FrameSetTest, FoldersWithoutPicturesAreRefused) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::detection

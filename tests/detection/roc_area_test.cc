@@ -7,7 +7,7 @@
 #include "studies/detection/scores.h"
 #include "studies/detection/views.h"
 
-namespace ed3r {
+namespace ed3r::detection {
 namespace {
 
 FrameLabel Label(bool positive, int view, const char* world = "w") {
@@ -55,4 +55,4 @@ TEST(Views, AreThoseOfAWorldInTheChosenFrames) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::detection

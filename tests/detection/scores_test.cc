@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace ed3r {
+namespace ed3r::detection {
 namespace {
 
 FrameLabel Label(bool positive, double distance_m = 0, double occluded = 0, double pixels = 0, int view = 0) {
@@ -54,7 +54,7 @@ TEST(Scores, TheIntervalTreatsTheFramesOfAViewAsOneDraw) {
     confidences.push_back(i / 10 % 4 == 0 ? 0.1 : 0.9);
   }
   const auto width = [&](const std::vector<FrameLabel>& labels) {
-    const Interval interval = ScoresOf(confidences, labels, All(labels).frames).accuracy_interval;
+    const statistics::Interval interval = ScoresOf(confidences, labels, All(labels).frames).accuracy_interval;
     return interval.hi - interval.lo;
   };
   EXPECT_GT(width(together), 2.0 * width(alone));
@@ -73,4 +73,4 @@ TEST(Scores, EachBandHoldsItsPositivesAndAllNegatives) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::detection

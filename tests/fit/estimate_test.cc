@@ -10,7 +10,7 @@
 #include "studies/fit/self_check.h"
 #include "studies/fit/uncertainty.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 class EstimateTest : public ::testing::Test {
@@ -175,4 +175,4 @@ TEST(StudentTest, MatchesTheTables) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::fit

@@ -12,7 +12,7 @@
 #include "engine/core/check.h"
 #include "studies/fit/fit_text.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 const std::string kFlights = std::string(ED3R_SOURCE_DIR) + "/sweeps/data/flight/";
@@ -165,4 +165,4 @@ TEST(FitTest, TakesTheAirframeFromSettings) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::fit

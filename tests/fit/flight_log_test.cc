@@ -9,7 +9,7 @@
 #include "studies/flight_logs/read_log.h"
 #include "tests/flight_logs/complaint.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 constexpr const char* kFormat = R"(columns: {time_s: t, power_w: p, airspeed_mps: v, climb_mps: w, flight: id}
@@ -33,13 +33,13 @@ std::string LogText(const std::function<void(int, std::vector<std::string>&)>& c
 }
 
 FlightLog Read(const std::string& text, const std::string& format = kFormat) {
-  std::vector<LogTable> tables;
+  std::vector<flight_logs::LogTable> tables;
   tables.push_back(CsvTable::Parse("log.csv", text));
   return MakeFlightLog(tables, ParseLogFormat("test.yaml", format));
 }
 
 std::string LogComplaint(const std::string& text, const std::string& format = kFormat) {
-  return Complaint([&] { Read(text, format); });
+  return flight_logs::Complaint([&] { Read(text, format); });
 }
 
 TEST(FlightLogTest, ReadsRowsUnitsAndMass) {
@@ -90,7 +90,7 @@ TEST(FlightLogTest, NamesMissingColumnsWithTheNearest) {
             "log.csv:1:1: no column 'powr' (power_w); did you mean 'power'? columns: time, power, v, w, id");
   EXPECT_EQ(LogComplaint("", kFormat), "log.csv:1:1: empty file; a header line was expected");
   EXPECT_EQ(LogComplaint("t,t\n1,2\n"), "log.csv:1:3: column 't' is there twice");
-  EXPECT_EQ(Complaint([] { ReadLog("no/such.csv", {}); }),
+  EXPECT_EQ(flight_logs::Complaint([] { flight_logs::ReadLog("no/such.csv", {}); }),
             "no/such.csv: cannot be read: No such file or directory");
 }
 
@@ -113,7 +113,7 @@ TEST(FlightLogTest, RefusesLogsThatCannotBeFitted) {
 }
 
 TEST(FlightLogTest, LogsToEvaluateNeedNoHover) {
-  std::vector<LogTable> tables;
+  std::vector<flight_logs::LogTable> tables;
   tables.push_back(
       CsvTable::Parse("log.csv", LogText([](int, std::vector<std::string>& cells) { cells[2] = "8"; })));
   EXPECT_EQ(MakeFlightLog(tables, ParseLogFormat("test.yaml", kFormat), LogUse::kEvaluate).hover_rows, 0);
@@ -153,7 +153,7 @@ TEST(LogFormatTest, BuiltInFormatsAreValid) {
 
 TEST(LogFormatTest, NamesTheMistake) {
   const auto complaint = [](const std::string& yaml) {
-    return Complaint([&] { ParseLogFormat("f.yaml", yaml); });
+    return flight_logs::Complaint([&] { ParseLogFormat("f.yaml", yaml); });
   };
   EXPECT_EQ(complaint("colums: {}"), "f.yaml:1:1: colums: unknown key; did you mean columns?");
   EXPECT_EQ(complaint("columns:\n  tiem_s: t"), "f.yaml:2:3: tiem_s: unknown key; did you mean time_s?");
@@ -166,10 +166,10 @@ TEST(LogFormatTest, NamesTheMistake) {
   EXPECT_EQ(complaint("robot: {mass_kg: 900}"),
             "f.yaml:1:18: robot.mass_kg: '900' is not allowed; allowed: 0.05 .. 50 kg");
   EXPECT_EQ(complaint("units: {climb_mps: 0}"), "f.yaml:1:20: units: a factor of 0 loses the column");
-  EXPECT_EQ(Complaint([] { LoadLogFormat("m10"); }),
+  EXPECT_EQ(flight_logs::Complaint([] { LoadLogFormat("m10"); }),
             "--format: 'm10' is neither a file nor a built-in format (m100, ardupilot, px4, dji); did you "
             "mean m100?");
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::fit

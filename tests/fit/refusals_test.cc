@@ -10,7 +10,7 @@
 #include "studies/fit/fit_text.h"
 #include "tests/flight_logs/complaint.h"
 
-namespace ed3r {
+namespace ed3r::fit {
 namespace {
 
 // One row of a made log, in SI units; a test changes what it is about before the row is written.
@@ -78,7 +78,7 @@ class RefusalsTest : public ::testing::Test {
 
   // Without the folder.
   std::string Says(const std::string& log, const std::string& format = FormatText()) const {
-    std::string message = Complaint([&] { Fit(log, format); });
+    std::string message = flight_logs::Complaint([&] { Fit(log, format); });
     for (std::size_t at; (at = message.find(folder_)) != std::string::npos;)
       message.erase(at, folder_.size());
     return message;
@@ -233,7 +233,7 @@ TEST_F(RefusalsTest, BadRowsAreNamedOrCounted) {
   const std::string many = LogText([](Row& row) {
     if (row.index % 5 == 0) row.power = "x";
   });
-  Expect(Complaint([&] { Fit(many, FormatText(), true); }),
+  Expect(flight_logs::Complaint([&] { Fit(many, FormatText(), true); }),
          {"--skip-bad would leave out 120 of 600 rows, at most 10 % are allowed"});
 }
 
@@ -298,4 +298,4 @@ TEST_F(RefusalsTest, WhatTheDataDoNotDetermineIsNotWritten) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::fit

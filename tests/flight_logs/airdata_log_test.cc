@@ -6,7 +6,7 @@
 #include "studies/flight_logs/read_log.h"
 #include "tests/flight_logs/complaint.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 // Ten seconds at 10 Hz: motors start, climb, hover, all with text where AirData has some.
@@ -71,4 +71,4 @@ TEST(AirDataLogTest, CountsBadRowsWhereAsked) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

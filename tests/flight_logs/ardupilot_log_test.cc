@@ -6,7 +6,7 @@
 #include "tests/flight_logs/complaint.h"
 #include "tests/flight_logs/log_writers.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 struct Made {
@@ -164,4 +164,4 @@ TEST(ArduPilotLogTest, RefusesDescriptionsThatDoNotAddUp) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

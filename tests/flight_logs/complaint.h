@@ -5,7 +5,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 // The one-line message of the UserError that reading throws; "" when it does not.
 inline std::string Complaint(const std::function<void()>& read) {
@@ -17,4 +17,4 @@ inline std::string Complaint(const std::function<void()>& read) {
   return "";
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

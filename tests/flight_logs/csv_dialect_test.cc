@@ -5,7 +5,7 @@
 #include "studies/flight_logs/read_log.h"
 #include "tests/flight_logs/complaint.h"
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 std::string Standard(const std::string& text, bool skip_bad = false) {
@@ -86,4 +86,4 @@ TEST(CsvDialectTest, KnowsWhatIsNoLog) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 
 class Bytes {
  public:
@@ -64,4 +64,4 @@ class ULogWriter {
   std::string log;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

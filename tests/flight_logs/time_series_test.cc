@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace ed3r {
+namespace ed3r::flight_logs {
 namespace {
 
 TEST(TimeSeriesTest, NearestAndLast) {
@@ -26,4 +26,4 @@ TEST(TimeSeriesTest, NearestAndLast) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::flight_logs

@@ -78,74 +78,75 @@ void Refusable(Read read) {
 
 void FuzzSweep(std::string_view bytes) {
   const InputFile file(bytes, "x.yaml");
-  Refusable([&] { LoadSweep(file.path()).CanonicalText(); });
+  Refusable([&] { sweep::LoadSweep(file.path()).CanonicalText(); });
 }
 
 void FuzzWorld(std::string_view bytes) {
   const InputFile file(bytes, "w.yaml");
-  Refusable([&] { ReadWorldFile(file.path()); });
+  Refusable([&] { world::ReadWorldFile(file.path()); });
 }
 
 // As a text grid and as a GeoTIFF: the reader looks at the content.
 void FuzzGrid(std::string_view bytes) {
   const InputFile file(bytes, "g.asc");
-  GridTerrainSpec spec;
+  world::GridTerrainSpec spec;
   spec.file = file.path();
   spec.extent_m = {100.0, 80.0};
-  Refusable([&] { ReadElevationGrid(spec, {100.0, 80.0, 500.0}, 10.0); });
+  Refusable([&] { world::ReadElevationGrid(spec, {100.0, 80.0, 500.0}, 10.0); });
 }
 
 void FuzzStemMap(std::string_view bytes) {
   const InputFile file(bytes, "stems.csv");
-  StemMapSpec spec;
+  world::StemMapSpec spec;
   spec.file = file.path();
-  spec.estimate_missing = ForestKind::kMixed;
+  spec.estimate_missing = world::ForestKind::kMixed;
   spec.tallest_of_a_spot = true;
-  Refusable([&] { ReadStemMap(spec); });
+  Refusable([&] { world::ReadStemMap(spec); });
 }
 
 void FuzzLog(std::string_view bytes) {
   for (const bool skip_bad : {false, true})
     Refusable([&] {
-      std::vector<LogTable> tables;
-      tables.push_back(ParseLog("log", std::string(bytes), {.skip_bad = skip_bad, .battery = 0}));
+      std::vector<flight_logs::LogTable> tables;
+      tables.push_back(
+          flight_logs::ParseLog("log", std::string(bytes), {.skip_bad = skip_bad, .battery = 0}));
       const char* formats[] = {"ardupilot", "px4", "ardupilot", "dji"};
-      MakeFlightLog(tables, LoadLogFormat(formats[static_cast<int>(tables.front().kind())]), LogUse::kFit,
-                    {.skip_bad = skip_bad, .battery = {}});
+      fit::MakeFlightLog(tables, fit::LoadLogFormat(formats[static_cast<int>(tables.front().kind())]),
+                         fit::LogUse::kFit, {.skip_bad = skip_bad, .battery = {}});
     });
 }
 
 void FuzzLogFormat(std::string_view bytes) {
-  Refusable([&] { ParseLogFormat("format.yaml", std::string(bytes)); });
+  Refusable([&] { fit::ParseLogFormat("format.yaml", std::string(bytes)); });
 }
 
 void FuzzNpy(std::string_view bytes) {
-  Refusable([&] { ParseNpy(bytes, "frames.npy"); });
+  Refusable([&] { detection::ParseNpy(bytes, "frames.npy"); });
 }
 
 void FuzzPicture(std::string_view bytes) {
   constexpr int kMostPixels = 1 << 20;  // of what is decoded
   Refusable([&] {
-    const PictureSides sides = ReadPictureSides(bytes, "x.png");
+    const world::PictureSides sides = world::ReadPictureSides(bytes, "x.png");
     if (sides.width_px * sides.height_px > kMostPixels) return;
-    bytes.front() == '\xff' ? void(CheckJpeg(bytes, "x.jpg")) : void(DecodePng(bytes, "x.png"));
+    bytes.front() == '\xff' ? void(world::CheckJpeg(bytes, "x.jpg")) : void(world::DecodePng(bytes, "x.png"));
   });
 }
 
 void FuzzOnnx(std::string_view bytes) {
   const std::string name = "x.onnx";
-  Refusable([&] { WithWeightsInside(std::string(bytes), "/nowhere/x.onnx", name); });
+  Refusable([&] { perception::WithWeightsInside(std::string(bytes), "/nowhere/x.onnx", name); });
   Refusable([&] {
-    CheckOnnx(bytes, name);
-    const OnnxOutline outline = OutlineOf(bytes, name);
+    perception::CheckOnnx(bytes, name);
+    const perception::OnnxOutline outline = perception::OutlineOf(bytes, name);
     DetectorConfig config;
     config.input_width_px = config.input_height_px = 0;
-    ForOpenCv(bytes, outline, ReadingOf(outline, config, name), name);
+    perception::ForOpenCv(bytes, outline, perception::ReadingOf(outline, config, name), name);
   });
 }
 
 void FuzzNetwork(std::string_view bytes) {
-  Refusable([&] { ParseOnnxGraph(bytes, "x.onnx"); });
+  Refusable([&] { rfnn::ParseOnnxGraph(bytes, "x.onnx"); });
 }
 
 // The bytes are the payload: what whoever seals a file himself may put into it.
@@ -157,7 +158,7 @@ void FuzzModel(std::string_view bytes) {
   Sha256 hash;
   hash.Update(sealed);
   sealed += hash.Hex();
-  Refusable([&] { ParseDetectorModel(sealed, "x.ed3rnet"); });
+  Refusable([&] { perception::ParseDetectorModel(sealed, "x.ed3rnet"); });
 }
 
 }  // namespace ed3r

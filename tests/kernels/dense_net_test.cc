@@ -7,7 +7,7 @@
 
 #include "tests/kernels/reference.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 TEST(DenseNetTest, CountsOfThePapersNetworks) {
@@ -65,4 +65,4 @@ TEST(AlignedFloatsTest, IsAlignedAndZero) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::kernels

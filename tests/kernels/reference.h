@@ -14,7 +14,7 @@
 #include "kernels/dense_net.h"
 #include "kernels/rfnn.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 
 inline DenseShape ShapeOf(const std::vector<int>& sizes) {
   return MakeDenseShape(sizes.data(), static_cast<int>(sizes.size()));
@@ -117,4 +117,4 @@ inline constexpr Way kWays[] = {{"chosen", RfnnArgmax},
                                 {"across candidates", RfnnAcrossCandidates},
                                 {"across neurons", RfnnAcrossNeurons}};
 
-}  // namespace ed3r
+}  // namespace ed3r::kernels

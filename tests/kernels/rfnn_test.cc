@@ -8,7 +8,7 @@
 #include "kernels/dense_kernels.h"
 #include "tests/kernels/reference.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -259,4 +259,4 @@ TEST(RfnnTest, AMillionRandomDecisionsAgreeBetweenLevels) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::kernels

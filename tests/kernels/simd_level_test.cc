@@ -8,7 +8,7 @@
 #include "kernels/rfnn.h"
 #include "tests/kernels/reference.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 std::string ErrorOf(const char* text) {
@@ -69,4 +69,4 @@ TEST(SimdLevelDeathTest, EnvironmentVariableForcesTheLevel) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::kernels

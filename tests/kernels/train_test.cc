@@ -8,7 +8,7 @@
 
 #include "tests/kernels/reference.h"
 
-namespace ed3r {
+namespace ed3r::kernels {
 namespace {
 
 struct Data {
@@ -372,4 +372,4 @@ TEST(TrainTest, RefusesBadOptionsAndBatches) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::kernels

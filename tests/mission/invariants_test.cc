@@ -10,7 +10,7 @@
 #include "engine/mission/mission.h"
 #include "tests/mission/small_world.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -36,9 +36,10 @@ class InvariantsTest : public ::testing::Test {
     return std::nullopt;
   }
 
-  Scene scene_{FlatParts()};
+  world::Scene scene_{FlatParts()};
   Config config_;
-  const MovementPower power_ = MovementPowerOf(config_.robot, config_.environment, config_.energy);
+  const robot::MovementPower power_ =
+      robot::MovementPowerOf(config_.robot, config_.environment, config_.energy);
   MissionRecord flown_;
 };
 
@@ -120,4 +121,4 @@ TEST_F(InvariantsTest, AMissionWithoutAnEnd) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::mission

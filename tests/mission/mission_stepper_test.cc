@@ -6,7 +6,7 @@
 #include "engine/core/check.h"
 #include "tests/mission/small_world.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 namespace {
 
 class MissionStepperTest : public ::testing::Test {
@@ -23,10 +23,10 @@ class MissionStepperTest : public ::testing::Test {
     return config;
   }
 
-  Scene scene_{FlatParts()};
+  world::Scene scene_{FlatParts()};
 };
 
-MotionCommand CommandOf(const TimestepRecord& step) {
+robot::MotionCommand CommandOf(const TimestepRecord& step) {
   return {.displacement_m = {step.command_dx_m, step.command_dy_m, step.command_dz_m},
           .turn_rad = step.command_turn_rad,
           .tilt_rad = step.command_tilt_rad};
@@ -42,10 +42,11 @@ TEST_F(MissionStepperTest, TheSameDecisionsAreTheSameMission) {
     MissionStepper mission(task);
     for (const TimestepRecord& step : flown.steps) {
       ASSERT_FALSE(mission.Ended());
-      EXPECT_EQ(mission.Order().hover, step.motion_rule == static_cast<std::int64_t>(MotionRule::kHover));
+      EXPECT_EQ(mission.Order().hover,
+                step.motion_rule == static_cast<std::int64_t>(agents::MotionRule::kHover));
       mission.Move(CommandOf(step));
       EXPECT_EQ(mission.RobotSees().rate_bps, step.rate_bps);
-      mission.Detect(static_cast<Execution>(step.execution));
+      mission.Detect(static_cast<agents::Execution>(step.execution));
       EXPECT_EQ(mission.LastStep().x_m, step.x_m);
       EXPECT_EQ(mission.LastStep().scs, step.scs);
       EXPECT_EQ(mission.LastStep().total_j, step.total_j);
@@ -72,7 +73,7 @@ TEST_F(MissionStepperTest, ItEndsWhenTheBatteryCannotPay) {
   double last_j = 0.0;
   while (!mission.Ended()) {
     mission.Move({.displacement_m = {0, 0, 1}, .tilt_rad = 1.5});
-    mission.Detect(Execution::kQuantized);
+    mission.Detect(agents::Execution::kQuantized);
     last_j = mission.LastStep().total_j;
   }
   EXPECT_EQ(mission.Result(), Outcome::kBatteryDepleted);
@@ -80,19 +81,19 @@ TEST_F(MissionStepperTest, ItEndsWhenTheBatteryCannotPay) {
   EXPECT_LT(record.battery_left_j, last_j);  // the timestep that it could not pay
   EXPECT_EQ(record.random_motions, 0);
   ASSERT_FALSE(record.steps.empty());
-  EXPECT_EQ(record.steps[0].motion_rule, static_cast<std::int64_t>(MotionRule::kOutside));
+  EXPECT_EQ(record.steps[0].motion_rule, static_cast<std::int64_t>(agents::MotionRule::kOutside));
 }
 
 TEST_F(MissionStepperTest, StagesTakeTurns) {
   const Config config = Flown("external");
   const MissionTask task = Task(config, 0);
   MissionStepper mission(task);
-  EXPECT_THROW(mission.Detect(Execution::kFull), InternalError);
+  EXPECT_THROW(mission.Detect(agents::Execution::kFull), InternalError);
   EXPECT_THROW(mission.Record(), InternalError);
   EXPECT_THROW(mission.Move({.turn_rad = NAN}), UserError);
   mission.Move({});
   EXPECT_THROW(mission.Move({}), InternalError);
-  mission.Detect(Execution::kFull);
+  mission.Detect(agents::Execution::kFull);
   EXPECT_EQ(mission.Timestep(), 2u);
 }
 
@@ -104,7 +105,7 @@ TEST_F(MissionStepperTest, ALimitCutsItShort) {
   for (int k = 0; k < 2; ++k) {
     EXPECT_FALSE(mission.AtLimit());
     mission.Move({.tilt_rad = 1.5});
-    mission.Detect(Execution::kQuantized);
+    mission.Detect(agents::Execution::kQuantized);
   }
   EXPECT_TRUE(mission.AtLimit());
 }
@@ -116,4 +117,4 @@ TEST_F(MissionStepperTest, AStrategyThatDecidesItselfIsNotStepped) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::mission

@@ -10,7 +10,7 @@
 #include "engine/robot/energy.h"
 #include "tests/mission/small_world.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 namespace {
 
 class MissionTest : public ::testing::Test {
@@ -25,7 +25,7 @@ class MissionTest : public ::testing::Test {
     return FlyMission(task);
   }
 
-  Scene scene_{FlatParts()};
+  world::Scene scene_{FlatParts()};
   Config config_;
 };
 
@@ -53,7 +53,7 @@ TEST_F(MissionTest, RbsFindsTheFireAndCompletesFromAHover) {
     const TimestepRecord& before = record.steps[record.steps.size() - 2];
     EXPECT_GE(last.scs, config_.agents.eta_min);
     EXPECT_GE(before.scs, config_.agents.eta_min);
-    EXPECT_EQ(last.motion_rule, static_cast<std::int64_t>(MotionRule::kHover));
+    EXPECT_EQ(last.motion_rule, static_cast<std::int64_t>(agents::MotionRule::kHover));
     EXPECT_EQ(last.horizontal_s + last.ascent_s + last.descent_s, 0.0);
     EXPECT_TRUE(last.fire_in_view || before.fire_in_view);
   }
@@ -102,7 +102,7 @@ TEST_F(MissionTest, HoveringIsBilledWhileTheRobotWaits) {
   for (const TimestepRecord& step : Fly("random", 1).steps) {
     EXPECT_NEAR(step.hover_sensing_j, 3.0 * 135.3, 0.2);
     EXPECT_EQ(step.sensing_s, 3.0);
-    if (step.execution == static_cast<std::int64_t>(Execution::kOffload)) {
+    if (step.execution == static_cast<std::int64_t>(agents::Execution::kOffload)) {
       EXPECT_EQ(step.computing_s, 0.0);
       EXPECT_GT(step.transmitting_s, 0.0);
       EXPECT_GT(step.hover_transmitting_j, 0.0);
@@ -126,7 +126,8 @@ TEST_F(MissionTest, EitherEnergyModelAddsUp) {
   const TimestepRecord& climb = momentum.steps[0];
   EXPECT_NE(paper.steps[0].total_j, climb.total_j);
   // In momentum theory a climb costs more than hovering for as long, a descent less.
-  const MovementPower power = MovementPowerOf(config_.robot, config_.environment, config_.energy);
+  const robot::MovementPower power =
+      robot::MovementPowerOf(config_.robot, config_.environment, config_.energy);
   EXPECT_GT(power.ascent_w, power.hover_w);
   EXPECT_LT(power.descent_w, power.hover_w);
 }
@@ -153,4 +154,4 @@ TEST_F(MissionTest, AnEndlessMissionIsAFailure) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::mission

@@ -8,11 +8,11 @@
 #include "engine/core/check.h"
 #include "tests/mission/small_world.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 namespace {
 
 TEST(ScenarioTest, PlacesTakeTurns) {
-  const Scene scene(FlatParts());
+  const world::Scene scene(FlatParts());
   std::map<std::pair<int, int>, int> counts;
   for (std::uint32_t i = 0; i < 850; ++i) {
     const Scenario scenario = DealScenario(scene, MissionConfig(), 7, i);
@@ -24,7 +24,7 @@ TEST(ScenarioTest, PlacesTakeTurns) {
 }
 
 TEST(ScenarioTest, WarmupUsesKnownPlacesOnly) {
-  const Scene scene(FlatParts());
+  const world::Scene scene(FlatParts());
   MissionConfig known;
   known.sites = known.base_stations = SiteSet::kKnown;
   for (std::uint32_t i = 0; i < 50; ++i) {
@@ -35,9 +35,9 @@ TEST(ScenarioTest, WarmupUsesKnownPlacesOnly) {
 }
 
 TEST(ScenarioTest, NoKnownPlacesIsBadInput) {
-  Scene::Parts parts = FlatParts();
-  for (FireSite& site : parts.sites) site.known = false;
-  const Scene scene(parts);
+  world::Scene::Parts parts = FlatParts();
+  for (world::FireSite& site : parts.sites) site.known = false;
+  const world::Scene scene(parts);
   MissionConfig known;
   known.sites = SiteSet::kKnown;
   try {
@@ -49,18 +49,18 @@ TEST(ScenarioTest, NoKnownPlacesIsBadInput) {
 }
 
 TEST(ScenarioTest, StartsLieOnTheDiscAndYawIsDrawnOrFixed) {
-  const Scene scene(FlatParts());
+  const world::Scene scene(FlatParts());
   MissionConfig fixed;
   fixed.start_yaw = StartYaw::kFixed;
   double lowest = 1e9, highest = -1e9, least_yaw = 1e9, greatest_yaw = -1e9;
   for (std::uint32_t i = 0; i < 500; ++i) {
-    const Pose start = DealScenario(scene, MissionConfig(), 7, i).start;
+    const robot::Pose start = DealScenario(scene, MissionConfig(), 7, i).start;
     ASSERT_LE(std::hypot(start.position_m.x() - 200, start.position_m.y() - 200), 10.0);
     lowest = std::min(lowest, start.position_m.z());
     highest = std::max(highest, start.position_m.z());
     least_yaw = std::min(least_yaw, start.yaw_rad);
     greatest_yaw = std::max(greatest_yaw, start.yaw_rad);
-    const Pose turned = DealScenario(scene, fixed, 7, i).start;
+    const robot::Pose turned = DealScenario(scene, fixed, 7, i).start;
     ASSERT_EQ(turned.position_m, start.position_m);
     ASSERT_EQ(turned.yaw_rad, 0.0);
   }
@@ -85,4 +85,4 @@ TEST(ScenarioTest, ConditionsStayInTheirRanges) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::mission

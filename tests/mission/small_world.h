@@ -3,10 +3,10 @@
 
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::mission {
 
-inline Scene::Parts FlatParts() {
-  Scene::Parts parts;
+inline world::Scene::Parts FlatParts() {
+  world::Scene::Parts parts;
   parts.name = "flat";
   parts.size_m = {400, 400, 165};
   parts.terrain = {
@@ -20,4 +20,4 @@ inline Scene::Parts FlatParts() {
   return parts;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::mission

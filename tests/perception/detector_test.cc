@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 double MeanScs(double fire_share, DetectionModel model) {
@@ -72,4 +72,4 @@ TEST(ProfileDetectorTest, AViewKeepsItsFluctuation) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

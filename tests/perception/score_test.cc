@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 TEST(ScoreTest, MeanMinusPopulationDeviation) {
@@ -41,4 +41,4 @@ TEST(ScoreTest, InstabilityIsNeverNegative) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -5,18 +5,18 @@
 #include <cmath>
 #include <numbers>
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-Pose At(double x_m, double y_m, double z_m, double yaw_deg, double tilt_deg) {
+robot::Pose At(double x_m, double y_m, double z_m, double yaw_deg, double tilt_deg) {
   return {{x_m, y_m, z_m}, yaw_deg * kDegree, tilt_deg * kDegree};
 }
 
 // Flat ground with one fire at (150, 100); with_ridge puts a 60 m ridge between x = 100 and x = 120.
-Scene FlatScene(bool with_ridge, const FireShape& fire = {}) {
-  Scene::Parts parts;
+world::Scene FlatScene(bool with_ridge, const world::FireShape& fire = {}) {
+  world::Scene::Parts parts;
   parts.name = "flat";
   parts.size_m = {300, 200, 165};
   parts.terrain = {
@@ -30,7 +30,7 @@ Scene FlatScene(bool with_ridge, const FireShape& fire = {}) {
   parts.base_stations = {{.name = "station", .antenna_m = {10, 10, 10}, .known = true}};
   parts.start = {.x_m = 20, .y_m = 100, .radius_m = 5, .height_min_m = 10, .height_max_m = 20};
   parts.fire = fire;
-  return Scene(parts);
+  return world::Scene(parts);
 }
 
 TEST(CameraTest, PinholeFrame) {
@@ -54,7 +54,7 @@ TEST(CameraTest, YawAndTilt) {
 }
 
 TEST(FireViewTest, SeenInTheOpenAndOnlyInItsDirection) {
-  const Scene scene = FlatScene(false);
+  const world::Scene scene = FlatScene(false);
   const FireView fire(scene, 0);
   const Config config;
   const View facing = fire.Look(At(50, 100, 20, 0, 0), config.sensing, config.perception, {});
@@ -68,7 +68,7 @@ TEST(FireViewTest, SeenInTheOpenAndOnlyInItsDirection) {
 }
 
 TEST(FireViewTest, ARidgeHidesIt) {
-  const Scene scene = FlatScene(true);
+  const world::Scene scene = FlatScene(true);
   const FireView fire(scene, 0);
   const Config config;
   EXPECT_FALSE(fire.Look(At(50, 100, 20, 0, 0), config.sensing, config.perception, {}).fire_in_view);
@@ -77,7 +77,7 @@ TEST(FireViewTest, ARidgeHidesIt) {
 
 // Twice the distance, a quarter of the image (haze aside), for a flame that is small against its distance.
 TEST(FireViewTest, ShareFallsWithTheSquareOfDistance) {
-  const Scene scene = FlatScene(false, {.flame_height_m = 1.0, .flame_radius_m = 0.3});
+  const world::Scene scene = FlatScene(false, {.flame_height_m = 1.0, .flame_radius_m = 0.3});
   const FireView fire(scene, 0);
   Config config;
   config.perception.haze_range_m = 1e6;
@@ -87,11 +87,11 @@ TEST(FireViewTest, ShareFallsWithTheSquareOfDistance) {
 }
 
 TEST(DistractorTest, MisleadsFromAboveOnly) {
-  const Scene scene = FlatScene(false);
+  const world::Scene scene = FlatScene(false);
   const FireView fire(scene, 0);
   const Config config;
   const std::vector<Distractor> rock = {{{50, 100, 0.5}, 3.0}};
-  const auto share = [&](const Pose& pose, const std::vector<Distractor>& seen) {
+  const auto share = [&](const robot::Pose& pose, const std::vector<Distractor>& seen) {
     return fire.Look(pose, config.sensing, config.perception, seen).distractor_share;
   };
   const double above = share(At(50, 100, 30, 90, 85), rock);
@@ -105,7 +105,7 @@ TEST(DistractorTest, MisleadsFromAboveOnly) {
 }
 
 TEST(DistractorTest, HowSteeplyDecidesByALogisticLaw) {
-  const Scene scene = FlatScene(false);
+  const world::Scene scene = FlatScene(false);
   const FireView fire(scene, 0);
   Config config;
   config.perception.distractor_tilt_deg = 60;
@@ -125,7 +125,7 @@ TEST(DistractorTest, HowSteeplyDecidesByALogisticLaw) {
 }
 
 TEST(DistractorTest, DrawnPerScenarioAndAtTheAskedDensity) {
-  const Scene scene = FlatScene(false);
+  const world::Scene scene = FlatScene(false);
   PerceptionConfig perception;
   perception.distractors_per_km2 = 500;  // 30 on 0.06 km^2
   const auto first = DrawDistractors(scene, perception, 1, 1);
@@ -135,7 +135,7 @@ TEST(DistractorTest, DrawnPerScenarioAndAtTheAskedDensity) {
 }
 
 TEST(DistractorTest, RadiiHaveTheAskedMeanAndTail) {
-  const Scene scene = FlatScene(false);
+  const world::Scene scene = FlatScene(false);
   PerceptionConfig perception;
   perception.distractors_per_km2 = 5000;
   perception.distractor_radius_m = 2.0;
@@ -155,4 +155,4 @@ TEST(DistractorTest, RadiiHaveTheAskedMeanAndTail) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

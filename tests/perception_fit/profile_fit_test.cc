@@ -10,7 +10,7 @@
 #include "engine/core/random.h"
 #include "engine/perception/score.h"
 
-namespace ed3r {
+namespace ed3r::perception_fit {
 namespace {
 
 PerceptionConfig Truth() {
@@ -41,7 +41,7 @@ std::vector<PeriodLook> Looks(const PerceptionConfig& truth, int count) {
       const double logit = r.slope * std::log10(signal / r.half_signal) + r.view_sigma * stream.Normal();
       for (double& c : frames) c = r.ceiling / (1.0 + std::exp(-(logit + r.frame_sigma * stream.Normal())));
     }
-    const Score score = StableConfidence(frames, truth.frame_threshold);
+    const perception::Score score = perception::StableConfidence(frames, truth.frame_threshold);
     look.mean = score.mean;
     look.deviation = score.standard_deviation;
     looks.push_back(look);
@@ -130,7 +130,7 @@ TEST(ProfileFitTest, AlarmProbabilityIsTheShareOfTheDraws) {
         const double view = logit + r.view_sigma * stream.Normal();
         std::vector<double> frames(33);
         for (double& c : frames) c = r.ceiling / (1.0 + std::exp(-(view + r.frame_sigma * stream.Normal())));
-        reliable += StableConfidence(frames, truth.frame_threshold).mean >= kReliable ? 1 : 0;
+        reliable += perception::StableConfidence(frames, truth.frame_threshold).mean >= kReliable ? 1 : 0;
       }
       EXPECT_NEAR(AlarmProbability(look, truth), static_cast<double>(reliable) / kDraws, 0.03)
           << quantized << " " << distractor_share;
@@ -167,4 +167,4 @@ TEST(ProfileFitTest, TooFewLooksAreRefused) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception_fit

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace ed3r {
+namespace ed3r::radio {
 namespace {
 
 // EVIDENCE of the readings: L_0 = 40.05 dB at 2.4 GHz and 1 m.
@@ -66,4 +66,4 @@ TEST(LinkTest, TransmissionOfOneSensingPeriod) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::radio

@@ -9,7 +9,7 @@
 #include "engine/core/check.h"
 #include "tests/rfnn/toys.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 using ::ed3r::testing::MessageOf;
@@ -78,7 +78,7 @@ TEST(SplitTest, ThreeMissionsAreTheLeast) {
   EXPECT_FALSE(split.test.empty());
   const std::vector<std::int64_t> two = {4, 4, 8};
   EXPECT_EQ(
-      MessageOf<UserError>([&] { MakeSplit(two, 3); }),
+      testing::MessageOf<UserError>([&] { MakeSplit(two, 3); }),
       "training: the warm-up holds rows of 2 missions; at least 3, one each to train, validate and test on");
 }
 
@@ -93,7 +93,7 @@ TEST(DataSetTest, RefusesWhatIsNotFiniteOrNotARow) {
 }
 
 TEST(DataSetTest, FingerprintTellsDataApart) {
-  const DataSet data = ToyData(4, 5, 0.1);
+  const DataSet data = testing::ToyData(4, 5, 0.1);
   std::set<std::string> prints = {Fingerprint(data)};
   EXPECT_EQ(Fingerprint(DataSet(data)), Fingerprint(data));
   DataSet other = data;
@@ -108,4 +108,4 @@ TEST(DataSetTest, FingerprintTellsDataApart) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

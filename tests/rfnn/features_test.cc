@@ -6,7 +6,7 @@
 
 #include "engine/rfnn/model.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 TEST(FeaturesTest, DesignsAreThePapers) {
@@ -14,8 +14,8 @@ TEST(FeaturesTest, DesignsAreThePapers) {
   EXPECT_EQ(kRcNetwork.states, 8);
   EXPECT_EQ(kRobotNetwork.inputs(), 11);
   EXPECT_EQ(kRobotNetwork.states, 9);
-  EXPECT_EQ(ParameterCount(ShapeOf(kRcNetwork)), 14u * 128 + 129 * 64 + 65 * 64 + 65 * 32 + 33);
-  EXPECT_EQ(ParameterCount(ShapeOf(kRobotNetwork)), 12u * 128 + 129 * 64 + 65 * 32 + 33);
+  EXPECT_EQ(kernels::ParameterCount(ShapeOf(kRcNetwork)), 14u * 128 + 129 * 64 + 65 * 64 + 65 * 32 + 33);
+  EXPECT_EQ(kernels::ParameterCount(ShapeOf(kRobotNetwork)), 12u * 128 + 129 * 64 + 65 * 32 + 33);
 }
 
 TEST(FeaturesTest, NamesStandWhereTheirColumnsAre) {
@@ -35,4 +35,4 @@ TEST(FeaturesTest, NamesStandWhereTheirColumnsAre) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -9,7 +9,7 @@
 #include "engine/core/sha256.h"
 #include "tests/rfnn/toys.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 using ::ed3r::testing::kTiny;
@@ -23,7 +23,7 @@ using ::ed3r::testing::WriteBytes;
 constexpr std::size_t kVersionAt = 8, kPayloadAt = 20, kDigestBytes = 64;
 
 ModelData Complete(const NetworkDesign& design) {
-  ModelData data = RandomModel(design, 31);
+  ModelData data = testing::RandomModel(design, 31);
   data.provenance = {{"seed", "3"}, {"note", "a = b"}, {"empty", ""}};
   data.report.curve = {{1.0, 0.9}, {0.8, 0.85}, {0.7, 0.86}};
   data.report.best_epoch = 2;
@@ -33,8 +33,8 @@ ModelData Complete(const NetworkDesign& design) {
 }
 
 // What reading says; "" when the file is taken. A refusal is one line and starts with the path.
-std::string Refusal(const std::string& path, const NetworkDesign& design = kTiny) {
-  const std::string message = MessageOf<UserError>([&] { ReadModel(path, design); });
+std::string Refusal(const std::string& path, const NetworkDesign& design = testing::kTiny) {
+  const std::string message = testing::MessageOf<UserError>([&] { ReadModel(path, design); });
   if (!message.empty()) {
     EXPECT_TRUE(message.starts_with(path + ": ")) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
@@ -45,8 +45,8 @@ std::string Refusal(const std::string& path, const NetworkDesign& design = kTiny
 class ModelFileTest : public ::testing::Test {
  protected:
   ModelFileTest() : path_(folder_.File("net.rfnn")) {
-    WriteModel(path_, Model(kTiny, Complete(kTiny)));
-    bytes_ = ReadBytes(path_);
+    WriteModel(path_, Model(testing::kTiny, Complete(testing::kTiny)));
+    bytes_ = testing::ReadBytes(path_);
   }
 
   // The same file with another payload and the checksum that belongs to it.
@@ -60,13 +60,13 @@ class ModelFileTest : public ::testing::Test {
   }
   std::string Payload() const { return bytes_.substr(kPayloadAt, bytes_.size() - kPayloadAt - kDigestBytes); }
 
-  TemporaryFolder folder_;
+  testing::TemporaryFolder folder_;
   std::string path_, bytes_;
 };
 
 TEST_F(ModelFileTest, ReadsBackEveryBit) {
-  const Model model = ReadModel(path_, kTiny);
-  const ModelData expected = Complete(kTiny);
+  const Model model = ReadModel(path_, testing::kTiny);
+  const ModelData expected = Complete(testing::kTiny);
   EXPECT_EQ(model.data().weights, expected.weights);
   EXPECT_EQ(model.data().scaling.input_mean, expected.scaling.input_mean);
   EXPECT_EQ(model.data().scaling.input_sd, expected.scaling.input_sd);
@@ -81,24 +81,24 @@ TEST_F(ModelFileTest, ReadsBackEveryBit) {
   EXPECT_EQ(model.data().report.test.rmse, 0.6);
   const std::string again = folder_.File("again.rfnn");
   WriteModel(again, model);
-  EXPECT_EQ(ReadBytes(again), bytes_);
+  EXPECT_EQ(testing::ReadBytes(again), bytes_);
 }
 
 TEST_F(ModelFileTest, OneFlippedBitAnywhereIsRefused) {
   for (std::size_t at = 0; at < bytes_.size(); ++at) {
     std::string damaged = bytes_;
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << at % 8));
-    WriteBytes(path_, damaged);
+    testing::WriteBytes(path_, damaged);
     ASSERT_NE(Refusal(path_), "") << "byte " << at;
   }
 }
 
 TEST_F(ModelFileTest, EveryTruncationIsRefused) {
   for (std::size_t size = 0; size < bytes_.size(); ++size) {
-    WriteBytes(path_, bytes_.substr(0, size));
+    testing::WriteBytes(path_, bytes_.substr(0, size));
     ASSERT_NE(Refusal(path_), "") << size << " bytes";
   }
-  WriteBytes(path_, bytes_ + "x");
+  testing::WriteBytes(path_, bytes_ + "x");
   EXPECT_NE(Refusal(path_), "");
 }
 
@@ -106,17 +106,17 @@ TEST_F(ModelFileTest, EveryTruncationIsRefused) {
 TEST_F(ModelFileTest, ContentWithAValidChecksumIsStillChecked) {
   const std::string payload = Payload();
   for (std::size_t size = 0; size < payload.size(); ++size) {
-    WriteBytes(path_, Resealed(payload.substr(0, size)));
+    testing::WriteBytes(path_, Resealed(payload.substr(0, size)));
     ASSERT_NE(Refusal(path_), "") << size << " bytes";
   }
-  WriteBytes(path_, Resealed(payload + "x"));
+  testing::WriteBytes(path_, Resealed(payload + "x"));
   EXPECT_EQ(Refusal(path_), path_ + ": this model file is damaged: it holds more than it should");
   for (std::size_t at = 0; at < payload.size(); ++at) {
     std::string other = payload;
     other[at] = static_cast<char>(~other[at]);
-    WriteBytes(path_, Resealed(other));
+    testing::WriteBytes(path_, Resealed(other));
     try {
-      const Model model = ReadModel(path_, kTiny);
+      const Model model = ReadModel(path_, testing::kTiny);
       for (const float weight : model.data().weights) ASSERT_TRUE(std::isfinite(weight)) << "byte " << at;
     } catch (const UserError&) {
     }
@@ -126,13 +126,13 @@ TEST_F(ModelFileTest, ContentWithAValidChecksumIsStillChecked) {
 TEST_F(ModelFileTest, MessagesSayWhatIsWrong) {
   std::string other = bytes_;
   other[kVersionAt] = 9;
-  WriteBytes(path_, other);
+  testing::WriteBytes(path_, other);
   EXPECT_EQ(Refusal(path_), path_ + ": this model file has format version 9; this program reads version 2");
-  WriteBytes(path_, "epoch,loss\n1,2\n");
+  testing::WriteBytes(path_, "epoch,loss\n1,2\n");
   EXPECT_EQ(Refusal(path_), path_ + ": is not a model file");
   other = bytes_;
   other[bytes_.size() - kDigestBytes - 1] ^= 1;
-  WriteBytes(path_, other);
+  testing::WriteBytes(path_, other);
   EXPECT_EQ(Refusal(path_), path_ + ": this model file is damaged: its SHA-256 does not match its content");
   EXPECT_EQ(Refusal(folder_.File("none.rfnn")),
             folder_.File("none.rfnn") + ": cannot read this model file: No such file or directory");
@@ -141,15 +141,15 @@ TEST_F(ModelFileTest, MessagesSayWhatIsWrong) {
 
 TEST_F(ModelFileTest, AnotherNetworkIsRefused) {
   EXPECT_EQ(
-      Refusal(path_, kToy),
+      Refusal(path_, testing::kToy),
       path_ +
           ": this model file holds another network: tiny network, 1 of 2 inputs are state (a u), hidden "
           "layers 2; wanted: toy network, 3 of 4 inputs are state (a b c u), hidden layers 24 x 16");
   const int wider[] = {3};
-  NetworkDesign same_but_wider = kTiny;
+  NetworkDesign same_but_wider = testing::kTiny;
   same_but_wider.hidden = wider;
   EXPECT_NE(Refusal(path_, same_but_wider), "");
-  NetworkDesign other_state = kTiny;
+  NetworkDesign other_state = testing::kTiny;
   other_state.states = 0;
   EXPECT_NE(Refusal(path_, other_state), "");
 }
@@ -160,16 +160,17 @@ TEST_F(ModelFileTest, WeightsAndScalesMustBeUsable) {
            [](ModelData& d) { d.weights[0] = std::numeric_limits<float>::infinity(); },
            [](ModelData& d) { d.scaling.input_sd[1] = -1.0; },
            [](ModelData& d) { d.scaling.input_mean[0] = std::numeric_limits<double>::infinity(); }}) {
-    ModelData data = Complete(kTiny);
+    ModelData data = Complete(testing::kTiny);
     spoil(data);
-    WriteModel(path_, Model(kTiny, std::move(data)));
+    WriteModel(path_, Model(testing::kTiny, std::move(data)));
     EXPECT_NE(Refusal(path_), "");
   }
 }
 
 TEST_F(ModelFileTest, WritingReplacesAndLeavesNothingElseBehind) {
-  WriteModel(path_, Model(kTiny, RandomModel(kTiny, 77)));
-  EXPECT_EQ(ReadModel(path_, kTiny).data().weights, RandomModel(kTiny, 77).weights);
+  WriteModel(path_, Model(testing::kTiny, testing::RandomModel(testing::kTiny, 77)));
+  EXPECT_EQ(ReadModel(path_, testing::kTiny).data().weights,
+            testing::RandomModel(testing::kTiny, 77).weights);
   int files = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_.File(""))) ++files;
   EXPECT_EQ(files, 1);
@@ -177,7 +178,8 @@ TEST_F(ModelFileTest, WritingReplacesAndLeavesNothingElseBehind) {
 
 TEST_F(ModelFileTest, AFolderThatIsNotThereIsAUserError) {
   const std::string nowhere = folder_.File("no/such/folder/net.rfnn");
-  EXPECT_EQ(MessageOf<UserError>([&] { WriteModel(nowhere, Model(kTiny, RandomModel(kTiny, 1))); }),
+  EXPECT_EQ(testing::MessageOf<UserError>(
+                [&] { WriteModel(nowhere, Model(testing::kTiny, testing::RandomModel(testing::kTiny, 1))); }),
             nowhere + ": cannot be written: No such file or directory");
 }
 
@@ -192,33 +194,34 @@ TEST(SealedFileTest, NumbersAreLittleEndian) {
 }
 
 TEST_F(ModelFileTest, BytesAreTheFileAndTheHashIsOfWhatIsComputed) {
-  ModelData data = Complete(kTiny);
+  ModelData data = Complete(testing::kTiny);
   data.key = "of a training";
-  const Model model(kTiny, data);
+  const Model model(testing::kTiny, data);
   WriteModel(path_, model);
-  EXPECT_EQ(ModelBytes(model), ReadBytes(path_));
-  const Model opened = OpenModel(ModelBytes(model), "kept", kTiny);
+  EXPECT_EQ(ModelBytes(model), testing::ReadBytes(path_));
+  const Model opened = OpenModel(ModelBytes(model), "kept", testing::kTiny);
   EXPECT_EQ(opened.data().weights, data.weights);
   EXPECT_EQ(opened.data().key, "of a training");
-  EXPECT_EQ(ReadModel(path_, kTiny, "of a training").data().weights, data.weights);
+  EXPECT_EQ(ReadModel(path_, testing::kTiny, "of a training").data().weights, data.weights);
   EXPECT_EQ(
-      MessageOf<UserError>([&] { ReadModel(path_, kTiny, "of another training"); }),
+      testing::MessageOf<UserError>([&] { ReadModel(path_, testing::kTiny, "of another training"); }),
       path_ +
           ": this model file holds the network of another training (of a training; wanted: of another train"
           "); delete it to train anew");
-  EXPECT_EQ(MessageOf<UserError>([&] { OpenModel("x", "kept", kTiny); }), "kept: is not a model file");
+  EXPECT_EQ(testing::MessageOf<UserError>([&] { OpenModel("x", "kept", testing::kTiny); }),
+            "kept: is not a model file");
 
   const std::string hash = NetworkHash(model);
   EXPECT_EQ(NetworkHash(opened), hash);
   data.key = "of another training";
   data.provenance.clear();
-  EXPECT_EQ(NetworkHash(Model(kTiny, data)), hash);
+  EXPECT_EQ(NetworkHash(Model(testing::kTiny, data)), hash);
   data.weights[1] += 1.0f;
-  EXPECT_NE(NetworkHash(Model(kTiny, data)), hash);
+  EXPECT_NE(NetworkHash(Model(testing::kTiny, data)), hash);
   data.weights[1] = model.data().weights[1];
   data.scaling.target_mean += 1.0;
-  EXPECT_NE(NetworkHash(Model(kTiny, data)), hash);
+  EXPECT_NE(NetworkHash(Model(testing::kTiny, data)), hash);
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

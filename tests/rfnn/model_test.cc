@@ -10,7 +10,7 @@
 #include "engine/core/check.h"
 #include "tests/rfnn/toys.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 using ::ed3r::testing::kToy;
@@ -19,7 +19,7 @@ using ::ed3r::testing::RandomModel;
 // The network in plain double arithmetic, from its definition.
 double Reference(const Model& model, std::vector<double> x) {
   const ModelData& data = model.data();
-  const DenseShape shape = ShapeOf(model.design());
+  const kernels::DenseShape shape = ShapeOf(model.design());
   for (std::size_t i = 0; i < x.size(); ++i)
     x[i] = (x[i] - data.scaling.input_mean[i]) / data.scaling.input_sd[i];
   const float* w = data.weights.data();
@@ -57,8 +57,8 @@ std::span<const float> ActionOf(const Model& model, const Question& q, int i) {
 }
 
 TEST(ModelTest, PredictsWhatTheDefinitionSays) {
-  for (const NetworkDesign& design : {kRcNetwork, kRobotNetwork, kToy}) {
-    const Model model(design, RandomModel(design, 11));
+  for (const NetworkDesign& design : {kRcNetwork, kRobotNetwork, testing::kToy}) {
+    const Model model(design, testing::RandomModel(design, 11));
     Model::Workspace workspace;
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
       const Question q = Ask(design, 1, seed);
@@ -72,7 +72,7 @@ TEST(ModelTest, PredictsWhatTheDefinitionSays) {
 
 TEST(ModelTest, BestIsTheArgmaxOfSinglePredictionsBitForBit) {
   for (const NetworkDesign& design : {kRcNetwork, kRobotNetwork}) {
-    const Model model(design, RandomModel(design, 12));
+    const Model model(design, testing::RandomModel(design, 12));
     Model::Workspace workspace;
     for (const int n : {1, 2, 3, 8, 9, 47, 48, 49, 1000}) {
       const Question q = Ask(design, n, static_cast<std::uint64_t>(n));
@@ -93,7 +93,7 @@ TEST(ModelTest, BestIsTheArgmaxOfSinglePredictionsBitForBit) {
 }
 
 TEST(ModelTest, RowsAgreeWithDecisionsBitForBit) {
-  const Model model(kRcNetwork, RandomModel(kRcNetwork, 13));
+  const Model model(kRcNetwork, testing::RandomModel(kRcNetwork, 13));
   Model::Workspace workspace;
   const Question q = Ask(kRcNetwork, 100, 3);
   std::vector<double> rewards(100), rows_rewards(100);
@@ -109,7 +109,7 @@ TEST(ModelTest, RowsAgreeWithDecisionsBitForBit) {
 }
 
 TEST(ModelTest, EqualActionsGoToTheLowestIndex) {
-  const Model model(kToy, RandomModel(kToy, 14));
+  const Model model(testing::kToy, testing::RandomModel(testing::kToy, 14));
   Model::Workspace workspace;
   const std::vector<double> state = {1, 2, 3};
   for (const std::size_t n : {3u, 20u})
@@ -117,23 +117,24 @@ TEST(ModelTest, EqualActionsGoToTheLowestIndex) {
 }
 
 TEST(ModelTest, EveryLevelGivesTheSameBits) {
-  const Model model(kRcNetwork, RandomModel(kRcNetwork, 15));
+  const Model model(kRcNetwork, testing::RandomModel(kRcNetwork, 15));
   const Question q = Ask(kRcNetwork, 333, 4);
-  Model::Workspace scalar(SimdLevel::kScalar);
+  Model::Workspace scalar(kernels::SimdLevel::kScalar);
   std::vector<double> expected(333), found(333);
   const BestAction best = model.Best(q.state, q.actions, expected, scalar);
-  for (const SimdLevel level : {SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-    if (!SimdLevelSupported(level)) continue;
+  for (const kernels::SimdLevel level : {kernels::SimdLevel::kAvx2, kernels::SimdLevel::kAvx512}) {
+    if (!kernels::SimdLevelSupported(level)) continue;
     Model::Workspace workspace(level);
     EXPECT_EQ(model.Best(q.state, q.actions, found, workspace).index, best.index);
-    EXPECT_EQ(found, expected) << SimdLevelName(level);
+    EXPECT_EQ(found, expected) << kernels::SimdLevelName(level);
   }
 }
 
 TEST(ModelTest, OneWorkspaceServesModelsOfAnySize) {
-  const Model small(kToy, RandomModel(kToy, 16)), large(kRcNetwork, RandomModel(kRcNetwork, 17));
+  const Model small(testing::kToy, testing::RandomModel(testing::kToy, 16)),
+      large(kRcNetwork, testing::RandomModel(kRcNetwork, 17));
   Model::Workspace shared;
-  const Question q_small = Ask(kToy, 5, 1), q_large = Ask(kRcNetwork, 700, 1);
+  const Question q_small = Ask(testing::kToy, 5, 1), q_large = Ask(kRcNetwork, 700, 1);
   for (int round = 0; round < 2; ++round) {
     Model::Workspace own_small, own_large;
     EXPECT_EQ(small.Best(q_small.state, q_small.actions, shared).reward,
@@ -144,7 +145,7 @@ TEST(ModelTest, OneWorkspaceServesModelsOfAnySize) {
 }
 
 TEST(ModelTest, ThreadsWithTheirOwnWorkspacesDoNotDisturbEachOther) {
-  const Model model(kRobotNetwork, RandomModel(kRobotNetwork, 18));
+  const Model model(kRobotNetwork, testing::RandomModel(kRobotNetwork, 18));
   std::vector<BestAction> found(64), expected(64);
   const auto answer = [&](std::size_t i, Model::Workspace& workspace) {
     const Question q = Ask(kRobotNetwork, 3, i);
@@ -166,7 +167,7 @@ TEST(ModelTest, ThreadsWithTheirOwnWorkspacesDoNotDisturbEachOther) {
 }
 
 TEST(ModelTest, RefusesWrongSizesAndPredictionsThatAreNotNumbers) {
-  const Model model(kToy, RandomModel(kToy, 19));
+  const Model model(testing::kToy, testing::RandomModel(testing::kToy, 19));
   Model::Workspace workspace;
   const std::vector<float> action = {0.5f}, none;
   std::vector<double> two_rewards(2);
@@ -176,10 +177,10 @@ TEST(ModelTest, RefusesWrongSizesAndPredictionsThatAreNotNumbers) {
   EXPECT_THROW(model.Best(state, none, workspace), InternalError);
   EXPECT_THROW(model.Best(state, action, two_rewards, workspace), InternalError);
   EXPECT_THROW(model.Best(broken, action, workspace), InternalError);
-  ModelData short_of_weights = RandomModel(kToy, 20);
+  ModelData short_of_weights = testing::RandomModel(testing::kToy, 20);
   short_of_weights.weights.pop_back();
-  EXPECT_THROW(Model(kToy, std::move(short_of_weights)), InternalError);
+  EXPECT_THROW(Model(testing::kToy, std::move(short_of_weights)), InternalError);
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -10,12 +10,12 @@
 #include "engine/rfnn/model_file.h"
 #include "engine/rfnn/onnx_graph.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 Model RandomModel(const NetworkDesign& design) {
   ModelData data;
-  data.weights.resize(ParameterCount(ShapeOf(design)));
+  data.weights.resize(kernels::ParameterCount(ShapeOf(design)));
   Stream stream(9, 0, Purpose::kTraining);
   for (float& weight : data.weights) weight = static_cast<float>(0.2 * stream.Normal());
   for (int i = 0; i < design.inputs(); ++i) {
@@ -197,4 +197,4 @@ TEST(OnnxNetworkTest, EveryCutIsRefused) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

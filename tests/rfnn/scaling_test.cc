@@ -6,13 +6,13 @@
 
 #include "tests/rfnn/toys.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 using ::ed3r::testing::ToyData;
 
 TEST(ScalingTest, TrainingRowsGetMeanZeroAndSpreadOne) {
-  const DataSet data = ToyData(10, 200, 0.3);
+  const DataSet data = testing::ToyData(10, 200, 0.3);
   std::vector<std::uint32_t> rows(1500);
   std::iota(rows.begin(), rows.end(), 200u);
   const Scaling scaling = FitScaling(data, rows);
@@ -31,7 +31,7 @@ TEST(ScalingTest, TrainingRowsGetMeanZeroAndSpreadOne) {
 }
 
 TEST(ScalingTest, RowsThatAreNotGivenDoNotCount) {
-  DataSet data = ToyData(10, 20, 0.3);
+  DataSet data = testing::ToyData(10, 20, 0.3);
   const std::vector<std::uint32_t> rows = {3, 5, 8, 13};
   const Scaling before = FitScaling(data, rows);
   data.inputs[0] = 1e6f;
@@ -42,7 +42,7 @@ TEST(ScalingTest, RowsThatAreNotGivenDoNotCount) {
 }
 
 TEST(ScalingTest, TargetsComeBack) {
-  const DataSet data = ToyData(10, 50, 0.3);
+  const DataSet data = testing::ToyData(10, 50, 0.3);
   std::vector<std::uint32_t> rows(data.rows());
   std::iota(rows.begin(), rows.end(), 0u);
   const Scaling scaling = FitScaling(data, rows);
@@ -51,7 +51,7 @@ TEST(ScalingTest, TargetsComeBack) {
 }
 
 TEST(ScalingTest, StateAndActionApartAreTheWholeRow) {
-  const DataSet data = ToyData(2, 5, 0.3);
+  const DataSet data = testing::ToyData(2, 5, 0.3);
   const std::vector<std::uint32_t> rows = {0, 1, 2, 3, 4, 5, 6};
   const InputScaler scaler(FitScaling(data, rows));
   float whole[4], parts[4];
@@ -79,4 +79,4 @@ TEST(ScalingTest, AConstantInputBecomesZeroWhereverItGoes) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

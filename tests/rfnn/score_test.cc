@@ -7,7 +7,7 @@
 
 #include "tests/rfnn/toys.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 using ::ed3r::testing::kTiny;
@@ -19,7 +19,7 @@ Model Identity() {
   data.scaling = {.input_mean = {0, 0}, .input_sd = {1, 1}, .target_mean = 0, .target_sd = 2};
   data.weights[6] = 0.5f;
   data.weights[7] = -0.5f;
-  return Model(kTiny, std::move(data));
+  return Model(testing::kTiny, std::move(data));
 }
 
 TEST(ScoreTest, IsTheTextbooks) {
@@ -62,4 +62,4 @@ TEST(ScoreTest, ImportanceIsOfTheInputThatIsUsed) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

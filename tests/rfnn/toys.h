@@ -18,15 +18,15 @@ namespace ed3r::testing {
 
 inline constexpr std::array<std::string_view, 4> kToyFeatures = {"a", "b", "c", "u"};
 inline constexpr std::array kToyHidden = {24, 16};
-inline constexpr NetworkDesign kToy = {"toy", kToyFeatures, 3, kToyHidden};
+inline constexpr rfnn::NetworkDesign kToy = {"toy", kToyFeatures, 3, kToyHidden};
 
 inline constexpr std::array<std::string_view, 2> kTinyFeatures = {"a", "u"};
 inline constexpr std::array kTinyHidden = {2};
-inline constexpr NetworkDesign kTiny = {"tiny", kTinyFeatures, 1, kTinyHidden};
+inline constexpr rfnn::NetworkDesign kTiny = {"tiny", kTinyFeatures, 1, kTinyHidden};
 
 // Rows of kToy in units far from standard; reward = 3 + 2 f + noise_sd N(0, 1).
-inline DataSet ToyData(int missions, int rows_each, double noise_sd, double signal = 1.0) {
-  DataSet data(4);
+inline rfnn::DataSet ToyData(int missions, int rows_each, double noise_sd, double signal = 1.0) {
+  rfnn::DataSet data(4);
   Stream stream(99, 0, Purpose::kScenario);
   for (int m = 0; m < missions; ++m) {
     for (int i = 0; i < rows_each; ++i) {
@@ -42,10 +42,10 @@ inline DataSet ToyData(int missions, int rows_each, double noise_sd, double sign
 }
 
 // A network of random weights and scales.
-inline ModelData RandomModel(const NetworkDesign& design, std::uint64_t seed) {
+inline rfnn::ModelData RandomModel(const rfnn::NetworkDesign& design, std::uint64_t seed) {
   Stream stream(seed, 0, Purpose::kTraining);
-  ModelData data;
-  const std::size_t parameters = ParameterCount(ShapeOf(design));
+  rfnn::ModelData data;
+  const std::size_t parameters = kernels::ParameterCount(rfnn::ShapeOf(design));
   for (std::size_t i = 0; i < parameters; ++i)
     data.weights.push_back(static_cast<float>(0.4 * stream.Normal()));
   for (int i = 0; i < design.inputs(); ++i) {

@@ -6,7 +6,7 @@
 #include "engine/core/check.h"
 #include "tests/rfnn/toys.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 using ::ed3r::testing::kToy;
@@ -17,12 +17,12 @@ using ::ed3r::testing::WriteBytes;
 
 class TrainAllTest : public ::testing::Test {
  protected:
-  TrainAllTest() : data_(ToyData(20, 30, 0.2)) {
+  TrainAllTest() : data_(testing::ToyData(20, 30, 0.2)) {
     options_.cache = folder_.File("cache/networks");
     options_.on_epoch = [this](std::size_t, int, const EpochLoss&) { ++epochs_; };
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       TrainJob job;
-      job.design = kToy;
+      job.design = testing::kToy;
       job.data = &data_;
       job.config.learning_rate = 3e-3;
       job.config.batch = 64;
@@ -38,7 +38,7 @@ class TrainAllTest : public ::testing::Test {
     return files;
   }
 
-  TemporaryFolder folder_;
+  testing::TemporaryFolder folder_;
   DataSet data_;
   std::vector<TrainJob> jobs_;
   TrainAllOptions options_;
@@ -69,7 +69,7 @@ TEST_F(TrainAllTest, AValidNetworkInAnothersPlaceIsRefused) {
   std::filesystem::rename(first, folder_.File("kept"));
   std::filesystem::rename(second, first);
   std::filesystem::rename(folder_.File("kept"), second);
-  EXPECT_EQ(MessageOf<UserError>([&] { TrainAll(jobs_, options_); }),
+  EXPECT_EQ(testing::MessageOf<UserError>([&] { TrainAll(jobs_, options_); }),
             fmt::format(
                 "{}: this model file holds the network of another training ({:.16}; wanted: {:.16}); delete "
                 "it to train anew",
@@ -109,19 +109,20 @@ TEST_F(TrainAllTest, ADamagedNetworkInTheCacheIsRefusedAfterTheOthersAreDone) {
   TrainAll(std::span(jobs_).first(1), options_);
   const std::string path = CachePath(options_.cache, jobs_[0]);
   ASSERT_TRUE(std::filesystem::exists(path));
-  WriteBytes(path, "no network");
-  EXPECT_EQ(MessageOf<UserError>([&] { TrainAll(jobs_, options_); }), path + ": is not a model file");
+  testing::WriteBytes(path, "no network");
+  EXPECT_EQ(testing::MessageOf<UserError>([&] { TrainAll(jobs_, options_); }),
+            path + ": is not a model file");
   EXPECT_EQ(epochs_, 20);
   EXPECT_EQ(Files(), 4);
 }
 
 TEST_F(TrainAllTest, ACacheThatCannotBeMadeIsAUserError) {
-  WriteBytes(folder_.File("file"), "");
+  testing::WriteBytes(folder_.File("file"), "");
   options_.cache = folder_.File("file");
-  EXPECT_TRUE(MessageOf<UserError>([&] {
+  EXPECT_TRUE(testing::MessageOf<UserError>([&] {
                 TrainAll(jobs_, options_);
               }).starts_with(options_.cache + ": cannot make this folder for networks: "));
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

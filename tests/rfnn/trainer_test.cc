@@ -9,7 +9,7 @@
 #include "engine/rfnn/score.h"
 #include "tests/rfnn/toys.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 using ::ed3r::testing::kToy;
@@ -21,7 +21,7 @@ using ::ed3r::testing::WriteBytes;
 
 TrainJob Job(const DataSet& data, int epochs = 12) {
   TrainJob job;
-  job.design = kToy;
+  job.design = testing::kToy;
   job.data = &data;
   job.config.learning_rate = 3e-3;
   job.config.batch = 64;
@@ -39,7 +39,7 @@ void ExpectSameNetwork(const Model& a, const Model& b) {
 }
 
 TEST(TrainerTest, LearnsAKnownFunction) {
-  const DataSet data = ToyData(80, 50, 0.05);
+  const DataSet data = testing::ToyData(80, 50, 0.05);
   TrainJob job = Job(data, 150);
   job.config.dropout = 0.0;
   job.config.patience = 30;
@@ -55,7 +55,7 @@ TEST(TrainerTest, LearnsAKnownFunction) {
 }
 
 TEST(TrainerTest, DropoutActsAndStillLearns) {
-  const DataSet data = ToyData(80, 50, 0.05);
+  const DataSet data = testing::ToyData(80, 50, 0.05);
   TrainJob job = Job(data, 100);
   job.config.patience = 30;
   const std::optional<Model> model = Train(job);
@@ -66,7 +66,7 @@ TEST(TrainerTest, DropoutActsAndStillLearns) {
 }
 
 TEST(TrainerTest, KeepsTheBestEpochAndStopsWhenPatienceIsOut) {
-  const DataSet data = ToyData(30, 30, 1.0, 0.0);  // nothing but noise
+  const DataSet data = testing::ToyData(30, 30, 1.0, 0.0);  // nothing but noise
   TrainJob job = Job(data, 500);
   job.config.patience = 7;
   const std::optional<Model> model = Train(job);
@@ -84,7 +84,7 @@ TEST(TrainerTest, KeepsTheBestEpochAndStopsWhenPatienceIsOut) {
 }
 
 TEST(TrainerTest, MinDeltaAsksForMore) {
-  const DataSet data = ToyData(30, 30, 0.1);
+  const DataSet data = testing::ToyData(30, 30, 0.1);
   TrainJob job = Job(data, 60);
   job.config.patience = 3;
   job.config.min_delta = 100.0;  // out of reach after the first epoch
@@ -95,7 +95,7 @@ TEST(TrainerTest, MinDeltaAsksForMore) {
 }
 
 TEST(TrainerTest, IsAPureFunctionOfItsJob) {
-  const DataSet data = ToyData(30, 40, 0.2);
+  const DataSet data = testing::ToyData(30, 40, 0.2);
   const TrainJob job = Job(data);
   const std::optional<Model> model = Train(job), again = Train(job);
   ASSERT_TRUE(model && again);
@@ -113,19 +113,20 @@ TEST(TrainerTest, IsAPureFunctionOfItsJob) {
 }
 
 TEST(TrainerTest, ThreadsAndSimdLevelsDoNotChangeABit) {
-  const DataSet data = ToyData(30, 40, 0.2);
+  const DataSet data = testing::ToyData(30, 40, 0.2);
   TrainJob job = Job(data, 4);
   job.config.batch = 100;  // sub-blocks of 32 rows and a rest
   TrainControl control;
-  control.level = SimdLevel::kScalar;
+  control.level = kernels::SimdLevel::kScalar;
   const std::optional<Model> expected = Train(job, control);
   ASSERT_TRUE(expected);
-  for (const SimdLevel level : {SimdLevel::kScalar, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-    if (!SimdLevelSupported(level)) continue;
+  for (const kernels::SimdLevel level :
+       {kernels::SimdLevel::kScalar, kernels::SimdLevel::kAvx2, kernels::SimdLevel::kAvx512}) {
+    if (!kernels::SimdLevelSupported(level)) continue;
     for (const int threads : {1, 2, 4}) {
       control.level = level;
       control.threads = threads;
-      SCOPED_TRACE(std::string(SimdLevelName(level)) + " x " + std::to_string(threads));
+      SCOPED_TRACE(std::string(kernels::SimdLevelName(level)) + " x " + std::to_string(threads));
       const std::optional<Model> found = Train(job, control);
       ASSERT_TRUE(found);
       ExpectSameNetwork(*found, *expected);
@@ -135,7 +136,7 @@ TEST(TrainerTest, ThreadsAndSimdLevelsDoNotChangeABit) {
 
 class ResumeTest : public ::testing::Test {
  protected:
-  ResumeTest() : data_(ToyData(30, 40, 0.2)), job_(Job(data_)), expected_(Train(job_)) {
+  ResumeTest() : data_(testing::ToyData(30, 40, 0.2)), job_(Job(data_)), expected_(Train(job_)) {
     control_.checkpoint = folder_.File("checkpoint");
     control_.stop = &stop_;
   }
@@ -148,7 +149,7 @@ class ResumeTest : public ::testing::Test {
     control_.on_epoch = nullptr;
   }
 
-  TemporaryFolder folder_;
+  testing::TemporaryFolder folder_;
   DataSet data_;
   TrainJob job_;
   std::optional<Model> expected_;
@@ -192,32 +193,32 @@ TEST_F(ResumeTest, StoppingBeforeTheFirstEpochLeavesNothing) {
 TEST_F(ResumeTest, CheckpointsOfOtherTrainingsAreRefused) {
   StopAfter(3);
   job_.config.learning_rate = 2e-3;
-  EXPECT_EQ(MessageOf<UserError>([&] { Train(job_, control_); }),
+  EXPECT_EQ(testing::MessageOf<UserError>([&] { Train(job_, control_); }),
             control_.checkpoint +
                 ": this training checkpoint belongs to another training; delete it to start anew");
 }
 
 TEST_F(ResumeTest, DamagedCheckpointsAreRefused) {
   StopAfter(3);
-  std::string bytes = ReadBytes(control_.checkpoint);
+  std::string bytes = testing::ReadBytes(control_.checkpoint);
   bytes[bytes.size() / 2] ^= 1;
-  WriteBytes(control_.checkpoint, bytes);
+  testing::WriteBytes(control_.checkpoint, bytes);
   EXPECT_EQ(
-      MessageOf<UserError>([&] { Train(job_, control_); }),
+      testing::MessageOf<UserError>([&] { Train(job_, control_); }),
       control_.checkpoint + ": this training checkpoint is damaged: its SHA-256 does not match its content");
 }
 
 TEST(TrainerTest, DivergenceIsAUserError) {
-  const DataSet data = ToyData(10, 20, 0.2);
+  const DataSet data = testing::ToyData(10, 20, 0.2);
   TrainJob job = Job(data);
   job.config.learning_rate = 1e30;
-  EXPECT_EQ(MessageOf<UserError>([&] { Train(job); }),
+  EXPECT_EQ(testing::MessageOf<UserError>([&] { Train(job); }),
             "training.learning_rate: '1e+30' makes the toy network diverge: no finite validation error in 10 "
             "epochs");
 }
 
 TEST(TrainerTest, ProvenanceTellsWhereItComesFrom) {
-  const DataSet data = ToyData(10, 20, 0.2);
+  const DataSet data = testing::ToyData(10, 20, 0.2);
   TrainJob job = Job(data, 1);
   job.notes = {{"eta_min", "0.75"}};
   const std::optional<Model> model = Train(job);
@@ -238,7 +239,7 @@ TEST(TrainerTest, ProvenanceTellsWhereItComesFrom) {
 }
 
 TEST(TrainingKeyTest, IsOfContentAndNothingElse) {
-  const DataSet data = ToyData(10, 20, 0.2), other_data = ToyData(10, 20, 0.3);
+  const DataSet data = testing::ToyData(10, 20, 0.2), other_data = testing::ToyData(10, 20, 0.3);
   const TrainJob job = Job(data);
   std::set<std::string> keys = {TrainingKey(job)};
   const auto differs = [&](auto change) {
@@ -256,4 +257,4 @@ TEST(TrainingKeyTest, IsOfContentAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 TrainingReport Sample() {
@@ -36,4 +36,4 @@ TEST(ReportTest, JsonHoldsAll) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace ed3r {
+namespace ed3r::robot {
 namespace {
 
 TEST(AirframeTest, DefaultsAreThePapersRobot) {
@@ -77,4 +77,4 @@ TEST(AirframeTest, RefusalsSayWhatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::robot

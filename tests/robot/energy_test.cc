@@ -9,7 +9,7 @@
 #include "engine/robot/ledger.h"
 #include "engine/robot/power/power_models.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 namespace {
 
 RobotConfig Heavy() {
@@ -143,4 +143,4 @@ TEST(EnergyTest, EachTimeIsChargedAtItsPower) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -8,13 +8,13 @@
 #include "engine/core/random.h"
 #include "tests/world/scene_builder.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 namespace {
 
 constexpr double kTubeM = 0.55;
 constexpr double kRangeM = 30.0;
 
-Tree Trunk(double x_m, double y_m, double radius_m) {
+world::Tree Trunk(double x_m, double y_m, double radius_m) {
   return {.x_m = x_m,
           .y_m = y_m,
           .ground_m = 0,
@@ -24,13 +24,13 @@ Tree Trunk(double x_m, double y_m, double radius_m) {
           .crown_depth_m = 4};
 }
 
-Scene FlatScene(std::vector<Tree> trees) {
-  return Scene(PartsOf(
+world::Scene FlatScene(std::vector<world::Tree> trees) {
+  return world::Scene(world::PartsOf(
       21, 10.0, [](double, double) { return 0.0; }, std::move(trees)));
 }
 
 TEST(LidarBundleTest, SeesWhatIsInTheTubeOnly) {
-  const Scene scene = FlatScene({Trunk(110, 100, 0.3)});
+  const world::Scene scene = FlatScene({Trunk(110, 100, 0.3)});
   const LidarBundle lidars(scene.Geometry(), kTubeM, kRangeM);
   const Eigen::Vector3d east = Eigen::Vector3d::UnitX();
   // The trunk is a pentagon: its faces are up to a fifth of the radius nearer to the axis.
@@ -44,7 +44,7 @@ TEST(LidarBundleTest, SeesWhatIsInTheTubeOnly) {
 }
 
 TEST(LidarBundleTest, NoThinTrunkSlipsBetweenTheRays) {
-  const Scene scene = FlatScene({Trunk(100, 100, 0.15)});
+  const world::Scene scene = FlatScene({Trunk(100, 100, 0.15)});
   for (const double tube_m : {0.45, kTubeM, 1.5, 2.6}) {
     const LidarBundle lidars(scene.Geometry(), tube_m, kRangeM);
     Stream draw(5, 0, Purpose::kMotion);
@@ -61,7 +61,7 @@ TEST(LidarBundleTest, NoThinTrunkSlipsBetweenTheRays) {
 }
 
 TEST(LegWatchTest, OneScanDoesForAStraightLegInSight) {
-  const Scene scene = FlatScene({Trunk(112, 100, 0.3)});
+  const world::Scene scene = FlatScene({Trunk(112, 100, 0.3)});
   const LidarBundle lidars(scene.Geometry(), kTubeM, kRangeM);
   LegWatch watch(lidars, {.stand_off_m = 2.0, .drift_m = 0.1}, {100, 100, 20}, Eigen::Vector3d::UnitX());
   EXPECT_NEAR(watch.RestLimitM(), 9.7, 0.1);
@@ -70,7 +70,7 @@ TEST(LegWatchTest, OneScanDoesForAStraightLegInSight) {
 }
 
 TEST(LegWatchTest, LooksAgainWhenItDriftsOrRunsOutOfSight) {
-  const Scene scene = FlatScene({Trunk(115, 101, 0.3), Trunk(150, 99, 0.3)});
+  const world::Scene scene = FlatScene({Trunk(115, 101, 0.3), Trunk(150, 99, 0.3)});
   const LidarBundle lidars(scene.Geometry(), kTubeM, kRangeM);
   LegWatch watch(lidars, {.stand_off_m = 2.0, .drift_m = 0.1}, {100, 100, 20}, Eigen::Vector3d::UnitX());
   EXPECT_NEAR(watch.RestLimitM(), 28.0, 1e-9);  // the first trunk is beside the tube
@@ -92,4 +92,4 @@ TEST(LegWatchTest, LooksAgainWhenItDriftsOrRunsOutOfSight) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "engine/core/random.h"
-#include "engine/world/flight_world.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 namespace {
+
+constexpr double kStepS = 1.0 / 240.0;
 
 TEST(RotorsTest, MixedThrustsGiveTheWrenchBack) {
   const Airframe airframe{Config()};
@@ -52,7 +53,7 @@ TEST(RotorsTest, ThrustsStayWithinTheirLimits) {
 // Steps until 63 % of a change of thrust has happened.
 int StepsTo63Percent(double from_n, double to_n) {
   const Airframe airframe{Config()};
-  Rotors rotors(airframe, FlightWorld::kUsualStepS);
+  Rotors rotors(airframe, kStepS);
   rotors.Settle({from_n, Eigen::Vector3d::Zero()});
   for (int step = 1; step < 1000; ++step) {
     const double thrust_n = rotors.Step({to_n, Eigen::Vector3d::Zero()}).thrust_n;
@@ -63,9 +64,9 @@ int StepsTo63Percent(double from_n, double to_n) {
 
 TEST(RotorsTest, SmallChangesFollowFastAndLargeOnesAtTheMotorsPace) {
   const double weight_n = Airframe{Config()}.WeightN();
-  EXPECT_NEAR(StepsTo63Percent(weight_n, 1.05 * weight_n) * FlightWorld::kUsualStepS, kRotorLagS, 0.005);
-  EXPECT_NEAR(StepsTo63Percent(0.0, 2.0 * weight_n) * FlightWorld::kUsualStepS, kMotorLagS, 0.006);
+  EXPECT_NEAR(StepsTo63Percent(weight_n, 1.05 * weight_n) * kStepS, kRotorLagS, 0.005);
+  EXPECT_NEAR(StepsTo63Percent(0.0, 2.0 * weight_n) * kStepS, kMotorLagS, 0.006);
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::robot

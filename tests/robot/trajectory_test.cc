@@ -6,7 +6,7 @@
 
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 namespace {
 
 constexpr double kTiny = 1e-9;
@@ -102,4 +102,4 @@ TEST(ProfileTest, BrakingFromCruiseTakesTheKnownDistance) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::robot

@@ -5,16 +5,16 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/world/flight_world.h"
-
-namespace ed3r {
+namespace ed3r::robot {
 namespace {
+
+constexpr double kStepS = 1.0 / 240.0;
 
 TEST(WindTest, WithoutGustsIsTheMean) {
   EnvironmentConfig environment;
   environment.wind_x_mps = 3;
   environment.wind_y_mps = -4;
-  Wind wind(environment, 1, 2, 3, FlightWorld::kUsualStepS);
+  Wind wind(environment, 1, 2, 3, kStepS);
   for (int i = 0; i < 100; ++i) wind.Step();
   EXPECT_EQ(wind.VelocityMps(), Eigen::Vector3d(3, -4, 0));
 }
@@ -23,11 +23,11 @@ TEST(WindTest, GustsHaveTheirSpreadAndMemory) {
   EnvironmentConfig environment;
   environment.wind_x_mps = 3;
   environment.gust_mps = 2;
-  const int lag = static_cast<int>(kGustCorrelationS / FlightWorld::kUsualStepS);
+  const int lag = static_cast<int>(kGustCorrelationS / kStepS);
   const int runs = 4000;
   double sum = 0, square = 0, product = 0;
   for (int run = 0; run < runs; ++run) {
-    Wind wind(environment, 7, run, 0, FlightWorld::kUsualStepS);
+    Wind wind(environment, 7, run, 0, kStepS);
     const double before = wind.VelocityMps().x() - 3;
     for (int i = 0; i < lag; ++i) wind.Step();
     const double after = wind.VelocityMps().x() - 3;
@@ -45,7 +45,7 @@ TEST(WindTest, IsAFunctionOfItsKey) {
   EnvironmentConfig environment;
   environment.gust_mps = 2;
   const auto after = [&](std::uint64_t seed, std::uint32_t scenario, std::uint32_t timestep) {
-    Wind wind(environment, seed, scenario, timestep, FlightWorld::kUsualStepS);
+    Wind wind(environment, seed, scenario, timestep, kStepS);
     for (int i = 0; i < 10; ++i) wind.Step();
     return wind.VelocityMps();
   };
@@ -56,4 +56,4 @@ TEST(WindTest, IsAFunctionOfItsKey) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::robot

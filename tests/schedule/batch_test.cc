@@ -12,7 +12,7 @@
 #include "engine/schedule/progress_of_stage.h"
 #include "tests/sweep/scratch.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 constexpr char kPlan[] = R"(
@@ -31,7 +31,7 @@ sweep: {robot.speed_mps: [3, 4]}
 )";
 
 std::vector<BatchStep> StepsFor(const char* plan_text, std::int64_t shards) {
-  const SweepPlan plan = LoadText(plan_text);
+  const sweep::SweepPlan plan = sweep::LoadText(plan_text);
   return StepsOf(plan, shards, 2, std::vector<double>(plan.stages.size(), 0.0));
 }
 
@@ -119,7 +119,7 @@ class SlurmScriptsTest : public testing::Test {
   }
   std::string Log() { return Read("log"); }
 
-  ScratchFolder scratch_;
+  sweep::ScratchFolder scratch_;
 };
 
 TEST_F(SlurmScriptsTest, AreShellThatParses) {
@@ -202,16 +202,16 @@ TEST_F(SlurmScriptsTest, ARoundOfAPrecisionDecidesWhatFollows) {
   EXPECT_EQ(Log().find("sbatch"), std::string::npos);
 }
 
-std::vector<RunId> Missions(int arms, int count) {
-  std::vector<RunId> ids;
+std::vector<sweep::RunId> Missions(int arms, int count) {
+  std::vector<sweep::RunId> ids;
   for (int arm = 0; arm < arms; ++arm)
     for (int mission = 0; mission < count; ++mission) ids.push_back({0, arm, mission});
   return ids;
 }
 
 TEST(StageProgressTest, WithoutAPrecisionAllMissionsAreDue) {
-  const SweepPlan plan = LoadText(kPlan);
-  std::vector<RunId> stored = Missions(1, 30);
+  const sweep::SweepPlan plan = sweep::LoadText(kPlan);
+  std::vector<sweep::RunId> stored = Missions(1, 30);
   EXPECT_TRUE(ProgressOf(plan, "warmup", stored, "", {}).open.empty());
   stored.erase(stored.begin() + 7);
   const StageProgress progress = ProgressOf(plan, "warmup", stored, "", {});
@@ -222,7 +222,7 @@ TEST(StageProgressTest, WithoutAPrecisionAllMissionsAreDue) {
 }
 
 TEST(StageProgressTest, APrecisionIsDecidedRoundByRound) {
-  const SweepPlan plan = LoadText(kPrecisePlan);
+  const sweep::SweepPlan plan = sweep::LoadText(kPrecisePlan);
   // Arm 0 is known after the first round, arm 1 never.
   const HalfWidthFn half_width = [](const std::string&, int, int arm, int, const std::string&) {
     return arm == 0 ? 1.0 : std::nan("");
@@ -239,4 +239,4 @@ TEST(StageProgressTest, APrecisionIsDecidedRoundByRound) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::schedule

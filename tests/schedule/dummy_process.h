@@ -16,7 +16,7 @@
 
 extern char** environ;
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
@@ -64,7 +64,7 @@ class DummyRun {
 
 inline std::int64_t StoredIn(const std::string& dir) {
   try {
-    return static_cast<std::int64_t>(ResultReader(dir).Stored().size());
+    return static_cast<std::int64_t>(store::ResultReader(dir).Stored().size());
   } catch (const UserError&) {  // not begun yet
     return 0;
   }
@@ -90,17 +90,17 @@ inline std::vector<Flown> ReadLog(const std::string& file) {
 
 inline std::string WholeDigest() {
   static const std::string digest = [] {
-    const TempDir temp;
-    RunLayout layout = TestLayout();
+    const store::TempDir temp;
+    store::RunLayout layout = store::TestLayout();
     layout.stages[0].missions = kMissions;
     {
-      const auto store = ResultStore::Open(temp / "whole", TestRecipe(), layout);
-      for (int m = 0; m < kMissions; ++m) store->Put({0, 0, m}, TestRecord({0, 0, m}), 0);
+      const auto store = store::ResultStore::Open(temp / "whole", store::TestRecipe(), layout);
+      for (int m = 0; m < kMissions; ++m) store->Put({0, 0, m}, store::TestRecord({0, 0, m}), 0);
       store->Commit();
     }
-    return DigestOfDir(temp / "whole");
+    return store::DigestOfDir(temp / "whole");
   }();
   return digest;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

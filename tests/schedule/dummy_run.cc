@@ -13,21 +13,21 @@
 #include "engine/schedule/todo.h"
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 int Run(const std::string& dir, int missions, int threads, int delay_ms, const char* log_file) {
   InstallInterruptHandler();
-  RunLayout layout = TestLayout();
+  store::RunLayout layout = store::TestLayout();
   layout.stages[0].missions = missions;
   const int log = open(log_file, O_WRONLY | O_CREAT | O_APPEND, 0600);
-  const auto store = ResultStore::Open(dir, TestRecipe(), layout);
-  const auto fly = [&](const RunId& id, const std::atomic<bool>& stop) {
+  const auto store = store::ResultStore::Open(dir, store::TestRecipe(), layout);
+  const auto fly = [&](const sweep::RunId& id, const std::atomic<bool>& stop) {
     for (int slept_ms = 0; slept_ms < delay_ms; ++slept_ms) {
       if (stop) throw Interrupted();
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    MissionRecord record = TestRecord(id);
+    mission::MissionRecord record = store::TestRecord(id);
     const std::string line =
         fmt::format("{} {}\n", id.mission, std::chrono::steady_clock::now().time_since_epoch().count());
     if (write(log, line.data(), line.size()) < 0) throw std::runtime_error("log");
@@ -40,12 +40,12 @@ int Run(const std::string& dir, int missions, int threads, int delay_ms, const c
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::schedule
 
 int main(int argc, char** argv) {
   if (argc != 6) return 1;
   try {
-    return ed3r::Run(argv[1], std::atoi(argv[2]), std::atoi(argv[3]), std::atoi(argv[4]), argv[5]);
+    return ed3r::schedule::Run(argv[1], std::atoi(argv[2]), std::atoi(argv[3]), std::atoi(argv[4]), argv[5]);
   } catch (const ed3r::UserError& error) {
     std::cerr << error.what() << "\n";
     return 2;

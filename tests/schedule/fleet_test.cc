@@ -11,7 +11,7 @@
 #include "engine/store/digest.h"
 #include "tests/mission/small_world.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 class FleetTest : public ::testing::Test {
@@ -21,8 +21,8 @@ class FleetTest : public ::testing::Test {
     config_.robot.battery_mah = 800;  // short missions
   }
 
-  MissionTask Task(std::int64_t mission) const {
-    MissionTask task{.scene = scene_, .config = config_};
+  mission::MissionTask Task(std::int64_t mission) const {
+    mission::MissionTask task{.scene = scene_, .config = config_};
     task.seed = 5;
     task.mission = static_cast<int>(mission);
     task.scenario = static_cast<std::uint32_t>(mission);
@@ -33,10 +33,10 @@ class FleetTest : public ::testing::Test {
   static void Decide(const Fleet& fleet, std::vector<float>& commands,
                      std::vector<std::int64_t>& executions) {
     for (std::size_t row = 0; row < fleet.rows(); ++row) {
-      const float* seen = fleet.Now().controller.data() + row * kRcStates;
+      const float* seen = fleet.Now().controller.data() + row * rfnn::kRcStates;
       float* command = commands.data() + row * kCommandValues;
-      command[0] = 10 * std::cos(seen[kRcYaw]), command[1] = 10 * std::sin(seen[kRcYaw]);
-      command[2] = 0, command[3] = 0.5, command[4] = seen[kRcPreviousScs];
+      command[0] = 10 * std::cos(seen[rfnn::kRcYaw]), command[1] = 10 * std::sin(seen[rfnn::kRcYaw]);
+      command[2] = 0, command[3] = 0.5, command[4] = seen[rfnn::kRcPreviousScs];
       executions[row] = fleet.Now().timestep[row] % 3;
     }
   }
@@ -45,15 +45,15 @@ class FleetTest : public ::testing::Test {
   std::map<int, std::string> Fly(std::int64_t missions, std::size_t rows, int threads) const {
     Fleet fleet(
         rows,
-        [&](std::size_t row, std::int64_t nth) -> std::optional<MissionTask> {
+        [&](std::size_t row, std::int64_t nth) -> std::optional<mission::MissionTask> {
           const std::int64_t mission = static_cast<std::int64_t>(row) + nth * static_cast<std::int64_t>(rows);
           if (mission >= missions) return std::nullopt;
           return Task(mission);
         },
         threads, Autoreset::kSameStep);
     std::map<int, std::string> digests;
-    fleet.OnRecord([&](const MissionTask& task, std::optional<MissionRecord> record) {
-      EXPECT_TRUE(digests.emplace(task.mission, DigestOf(record.value())).second);
+    fleet.OnRecord([&](const mission::MissionTask& task, std::optional<mission::MissionRecord> record) {
+      EXPECT_TRUE(digests.emplace(task.mission, store::DigestOf(record.value())).second);
     });
     fleet.Reset();
     std::vector<float> commands(rows * kCommandValues);
@@ -92,7 +92,7 @@ class FleetTest : public ::testing::Test {
     ASSERT_EQ(fleet.Now().terminated[0], 1);
   }
 
-  Scene scene_{FlatParts()};
+  world::Scene scene_{mission::FlatParts()};
   Config config_;
 };
 
@@ -168,4 +168,4 @@ TEST_F(FleetTest, ALimitTruncates) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -13,19 +13,19 @@
 #include "engine/store/reader.h"
 #include "engine/sweep/sweep_file.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 namespace fs = std::filesystem;
 
-Model RandomModel(const NetworkDesign& design) {
-  ModelData data;
-  data.weights.resize(ParameterCount(ShapeOf(design)));
+rfnn::Model RandomModel(const rfnn::NetworkDesign& design) {
+  rfnn::ModelData data;
+  data.weights.resize(kernels::ParameterCount(rfnn::ShapeOf(design)));
   Stream stream(4, 0, Purpose::kTraining);
   for (float& weight : data.weights) weight = static_cast<float>(0.2 * stream.Normal());
   data.scaling.input_mean.assign(design.features.size(), 0.1);
   data.scaling.input_sd.assign(design.features.size(), 11.3);
-  return Model(design, data);
+  return rfnn::Model(design, data);
 }
 
 class OwnNetworksTest : public ::testing::Test {
@@ -33,18 +33,18 @@ class OwnNetworksTest : public ::testing::Test {
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("ed3r_own_networks_" + std::to_string(getpid()));
     fs::create_directories(folder_);
-    WriteFile(folder_ / "rc.onnx", OnnxBytes(rc_));
-    WriteFile(folder_ / "robot.onnx", OnnxBytes(robot_));
+    WriteFile(folder_ / "rc.onnx", rfnn::OnnxBytes(rc_));
+    WriteFile(folder_ / "robot.onnx", rfnn::OnnxBytes(robot_));
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  SweepPlan Plan(const std::string& set) const {
+  sweep::SweepPlan Plan(const std::string& set) const {
     WriteFile(folder_ / "own.yaml",
               "# own\nname: own\nmissions: 3\nseed: 8\nset: {mission.world: " ED3R_SOURCE_DIR
               "/sweeps/worlds/paper.yaml, robot.battery_mah: 900, agents.candidates: 50, "
               "agents.epsilon_decay: 0.1, " +
                   set + "}\n");
-    return LoadSweep((folder_ / "own.yaml").string());
+    return sweep::LoadSweep((folder_ / "own.yaml").string());
   }
 
   std::string RefusalOf(const std::string& set) const {
@@ -57,12 +57,12 @@ class OwnNetworksTest : public ::testing::Test {
   }
 
   fs::path folder_;
-  Model rc_ = RandomModel(kRcNetwork);
-  Model robot_ = RandomModel(kRobotNetwork);
+  rfnn::Model rc_ = RandomModel(rfnn::kRcNetwork);
+  rfnn::Model robot_ = RandomModel(rfnn::kRobotNetwork);
 };
 
 TEST_F(OwnNetworksTest, TheyFlyAsTheNetworksThatWereExported) {
-  const SweepPlan plan = Plan("strategy: ed3r, networks: {rc: rc.onnx, robot: robot.onnx}");
+  const sweep::SweepPlan plan = Plan("strategy: ed3r, networks: {rc: rc.onnx, robot: robot.onnx}");
   EXPECT_FALSE(NeedsNetworks(plan));
   const Inputs inputs(plan);
   SweepOptions options;
@@ -71,17 +71,17 @@ TEST_F(OwnNetworksTest, TheyFlyAsTheNetworksThatWereExported) {
   options.schedule.quiet = true;
   EXPECT_EQ(RunSweep(plan, inputs, options).flown.stored, 3);
 
-  ResultReader reader(options.dir);
+  store::ResultReader reader(options.dir);
   EXPECT_TRUE(reader.StoredRecipe().inputs.contains("network rc.onnx"));
   bool greedy = false;
   for (int mission = 0; mission < 3; ++mission) {
-    const StoredMission stored = reader.LoadMission({0, 0, mission});
-    MissionTask task = TaskOf(plan, inputs, nullptr, {0, 0, mission});
+    const store::StoredMission stored = reader.LoadMission({0, 0, mission});
+    mission::MissionTask task = TaskOf(plan, inputs, nullptr, {0, 0, mission});
     EXPECT_NE(task.networks.rc, nullptr);
     task.networks.rc = &rc_, task.networks.robot = &robot_;
-    EXPECT_EQ(DigestOf(FlyMission(task)), DigestOf(stored.record));
-    for (const TimestepRecord& step : stored.record.steps)
-      greedy = greedy || step.motion_rule == static_cast<std::int64_t>(MotionRule::kGreedy);
+    EXPECT_EQ(store::DigestOf(mission::FlyMission(task)), store::DigestOf(stored.record));
+    for (const mission::TimestepRecord& step : stored.record.steps)
+      greedy = greedy || step.motion_rule == static_cast<std::int64_t>(agents::MotionRule::kGreedy);
   }
   EXPECT_TRUE(greedy);
 }
@@ -104,24 +104,25 @@ TEST_F(OwnNetworksTest, WhatIsMissingIsSaid) {
 TEST_F(OwnNetworksTest, TheyMayDecideThemselves) {
   const auto constant = [](std::int64_t inputs, std::vector<float> values) {
     const auto outputs = static_cast<std::int64_t>(values.size());
-    const OnnxTensor weights{{inputs, outputs},
-                             std::vector<float>(static_cast<std::size_t>(inputs * outputs))};
-    return DenseChain{{}, {}, {weights}, {{{outputs}, std::move(values)}}};
+    const rfnn::OnnxTensor weights{{inputs, outputs},
+                                   std::vector<float>(static_cast<std::size_t>(inputs * outputs))};
+    return rfnn::DenseChain{{}, {}, {weights}, {{{outputs}, std::move(values)}}};
   };
-  WriteFile(folder_ / "turn.onnx", OnnxBytes(constant(8, {0, 0, 0, 0.6F, 0.1F}), "turn", kRcNetwork));
-  WriteFile(folder_ / "liked.onnx", OnnxBytes(constant(9, {3, 1, 2}), "liked", kRobotNetwork));
-  for (const auto& [strategy, execution] :
-       {std::pair{"ed3r", Execution::kOffload}, std::pair{"ablation-3", Execution::kQuantized}}) {
-    const SweepPlan plan =
+  WriteFile(folder_ / "turn.onnx",
+            rfnn::OnnxBytes(constant(8, {0, 0, 0, 0.6F, 0.1F}), "turn", rfnn::kRcNetwork));
+  WriteFile(folder_ / "liked.onnx", rfnn::OnnxBytes(constant(9, {3, 1, 2}), "liked", rfnn::kRobotNetwork));
+  for (const auto& [strategy, execution] : {std::pair{"ed3r", agents::Execution::kOffload},
+                                            std::pair{"ablation-3", agents::Execution::kQuantized}}) {
+    const sweep::SweepPlan plan =
         Plan(std::string("strategy: ") + strategy + ", networks: {rc: turn.onnx, robot: liked.onnx}");
     EXPECT_FALSE(NeedsNetworks(plan));
     const Inputs inputs(plan);
     EXPECT_TRUE(inputs.Fingerprints(plan).contains("network turn.onnx"));
-    const MissionRecord record = FlyMission(TaskOf(plan, inputs, nullptr, {0, 0, 0}));
+    const mission::MissionRecord record = mission::FlyMission(TaskOf(plan, inputs, nullptr, {0, 0, 0}));
     int commanded = 0;
-    for (const TimestepRecord& step : record.steps) {
+    for (const mission::TimestepRecord& step : record.steps) {
       EXPECT_EQ(step.execution, static_cast<std::int64_t>(execution));
-      if (step.motion_rule != static_cast<std::int64_t>(MotionRule::kCommanded)) continue;
+      if (step.motion_rule != static_cast<std::int64_t>(agents::MotionRule::kCommanded)) continue;
       ++commanded;
       EXPECT_EQ(step.command_dx_m, 0.0);
       EXPECT_EQ(step.epsilon, 0.0);
@@ -141,7 +142,7 @@ TEST_F(OwnNetworksTest, TheyMayDecideThemselves) {
 
 // Arms of strategy external are flown by a program alone.
 TEST_F(OwnNetworksTest, DecisionsFromOutsideNeedAProgram) {
-  const SweepPlan plan = Plan("strategy: external");
+  const sweep::SweepPlan plan = Plan("strategy: external");
   const Inputs inputs(plan);
   SweepOptions options;
   options.dir = (folder_ / "outside").string();
@@ -150,4 +151,4 @@ TEST_F(OwnNetworksTest, DecisionsFromOutsideNeedAProgram) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 std::vector<Phase> Seen() {
@@ -79,4 +79,4 @@ TEST(PhaseSamplerTest, TextNamesTheLargestFirst) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::schedule

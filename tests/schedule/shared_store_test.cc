@@ -4,7 +4,7 @@
 #include "engine/store/owner_file.h"
 #include "tests/schedule/dummy_process.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 // Each as the shim (file_system_shim.c) or the user tells it.
@@ -42,78 +42,78 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST_P(SharedStoreTest, AKillKeepsWhatIsStoredAndASecondWriterIsRefused) {
-  const TempDir temp;
+  const store::TempDir temp;
   DummyRun run(temp / "run", 2, 3, temp / "log");
   WaitFor([&] { return StoredIn(temp / "run") > 50; });
-  EXPECT_FALSE(std::filesystem::exists(ResultsIn(temp / "run") + "-wal"));
-  EXPECT_FALSE(std::filesystem::exists(ResultsIn(temp / "run") + "-shm"));
+  EXPECT_FALSE(std::filesystem::exists(store::ResultsIn(temp / "run") + "-wal"));
+  EXPECT_FALSE(std::filesystem::exists(store::ResultsIn(temp / "run") + "-shm"));
 
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(DummyRun(temp / "run", 1, 0, temp / "log2").Wait(), 2);
-  EXPECT_TRUE(Contains(::testing::internal::GetCapturedStderr(), "another ed3r is writing"));
+  EXPECT_TRUE(store::Contains(::testing::internal::GetCapturedStderr(), "another ed3r is writing"));
   EXPECT_TRUE(ReadLog(temp / "log2").empty());
 
   run.Signal(SIGKILL);
   run.Wait();
-  const std::size_t stored = ResultReader(temp / "run").Stored().size();  // rolls an open commit back
+  const std::size_t stored = store::ResultReader(temp / "run").Stored().size();  // rolls an open commit back
   EXPECT_GT(stored, 50u);
   EXPECT_EQ(DummyRun(temp / "run", 2, 0, temp / "log3").Wait(), 0);
   EXPECT_EQ(ReadLog(temp / "log3").size(), kMissions - stored) << "flies nothing that is stored";
-  EXPECT_EQ(DigestOfDir(temp / "run"), WholeDigest());
-  EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(temp / "run") / kOwnerFile));
+  EXPECT_EQ(store::DigestOfDir(temp / "run"), WholeDigest());
+  EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(temp / "run") / store::kOwnerFile));
 }
 
 TEST_P(SharedStoreTest, TwoWritersThatMeetInSpiteOfItLeaveRightResults) {
-  const TempDir temp;
+  const store::TempDir temp;
   DummyRun first(temp / "run", 2, 3, temp / "log");
   WaitFor([&] { return StoredIn(temp / "run") > 50; });
-  std::filesystem::remove(std::filesystem::path(temp / "run") / kOwnerFile);
+  std::filesystem::remove(std::filesystem::path(temp / "run") / store::kOwnerFile);
   DummyRun second(temp / "run", 2, 3, temp / "log2");
   first.Wait();
   second.Wait();
   // Whichever of them met the other's missions has ended; what is stored is right and continues.
   EXPECT_EQ(DummyRun(temp / "run", 2, 0, temp / "log3").Wait(), 0);
-  EXPECT_EQ(DigestOfDir(temp / "run"), WholeDigest());
+  EXPECT_EQ(store::DigestOfDir(temp / "run"), WholeDigest());
 }
 
 TEST(SharedMemoryTest, AStoreWithoutItIsWrittenAllTheSame) {
   setenv("LD_PRELOAD", ED3R_SHIM, 1);
   setenv("SHIM_SHM", "fails", 1);
-  const TempDir temp;
+  const store::TempDir temp;
   EXPECT_EQ(DummyRun(temp / "run", 2, 0, temp / "log").Wait(), 0);
   unsetenv("LD_PRELOAD");
   unsetenv("SHIM_SHM");
-  EXPECT_EQ(DigestOfDir(temp / "run"), WholeDigest());
-  EXPECT_FALSE(std::filesystem::exists(ResultsIn(temp / "run") + "-wal"));
+  EXPECT_EQ(store::DigestOfDir(temp / "run"), WholeDigest());
+  EXPECT_FALSE(std::filesystem::exists(store::ResultsIn(temp / "run") + "-wal"));
 }
 
 TEST(OwnerFileTest, IsTakenOverOnlyFromAnOwnerThatIsGone) {
-  const TempDir temp;
-  const std::string dir = temp / "run", file = dir + "/" + kOwnerFile;
+  const store::TempDir temp;
+  const std::string dir = temp / "run", file = dir + "/" + store::kOwnerFile;
   std::filesystem::create_directories(dir);
   std::string owner;
   {
-    const auto mine = OwnerFile::TryTake(dir, owner);
+    const auto mine = store::OwnerFile::TryTake(dir, owner);
     ASSERT_NE(mine, nullptr);
-    EXPECT_EQ(OwnerFile::TryTake(dir, owner), nullptr);
-    EXPECT_TRUE(Contains(owner, fmt::format("process {} on ", getpid())));
+    EXPECT_EQ(store::OwnerFile::TryTake(dir, owner), nullptr);
+    EXPECT_TRUE(store::Contains(owner, fmt::format("process {} on ", getpid())));
   }
   EXPECT_FALSE(std::filesystem::exists(file));
 
   const auto left_by = [&](const std::string& text) { std::ofstream(file) << text; };
   left_by("elsewhere 12 4711 token\n");
-  EXPECT_EQ(OwnerFile::TryTake(dir, owner), nullptr) << "nobody knows whether it lives";
+  EXPECT_EQ(store::OwnerFile::TryTake(dir, owner), nullptr) << "nobody knows whether it lives";
   EXPECT_EQ(owner, "process 12 on elsewhere, job 4711");
   setenv("SLURM_JOB_ID", "4711", 1);
-  EXPECT_NE(OwnerFile::TryTake(dir, owner), nullptr) << "the same job runs again";
+  EXPECT_NE(store::OwnerFile::TryTake(dir, owner), nullptr) << "the same job runs again";
   unsetenv("SLURM_JOB_ID");
 
   left_by("elsewhere 12 - token\n");
   const auto now = std::filesystem::last_write_time(file);
-  std::filesystem::last_write_time(file, now - kOwnerStale - std::chrono::seconds(5));
-  EXPECT_NE(OwnerFile::TryTake(dir, owner), nullptr) << "not renewed for long";
+  std::filesystem::last_write_time(file, now - store::kOwnerStale - std::chrono::seconds(5));
+  EXPECT_NE(store::OwnerFile::TryTake(dir, owner), nullptr) << "not renewed for long";
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir), {}), 0) << "nothing is left behind";
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::schedule

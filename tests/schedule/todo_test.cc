@@ -5,7 +5,7 @@
 
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 TEST(ShardTest, IsReadStrictly) {
@@ -15,18 +15,19 @@ TEST(ShardTest, IsReadStrictly) {
   EXPECT_EQ(ParseShard("0/1").count, 1);
   for (const char* wrong : {"", "1", "/", "1/", "/4", "5/4", "-1/4", "1/0", "0/0", "1/-4", "1/4/2", "a/4",
                             "1 /4", "1/4 ", "0x1/4", "1.0/4", "99999999999999999999/4"})
-    EXPECT_TRUE(Contains(UserErrorOf([&] { ParseShard(wrong); }), fmt::format("--shard: \"{}\"", wrong)));
+    EXPECT_TRUE(store::Contains(store::UserErrorOf([&] { ParseShard(wrong); }),
+                                fmt::format("--shard: \"{}\"", wrong)));
 }
 
 TEST(ShardTest, EveryMissionIsInExactlyOneShard) {
-  const RunLayout layout = TestLayout();
+  const store::RunLayout layout = store::TestLayout();
   for (const std::int64_t count : {1, 2, 3, 7, 100, 150}) {
-    std::vector<RunId> together;
+    std::vector<sweep::RunId> together;
     std::size_t smallest = 1000, largest = 0;
     for (std::int64_t index = 0; index < count; ++index) {
       std::size_t size = 0;
       for (int stage = 0; stage < 3; ++stage) {
-        for (const RunId& id : Todo(layout, stage, {index, count}, {})) {
+        for (const sweep::RunId& id : Todo(layout, stage, {index, count}, {})) {
           together.push_back(id);
           ++size;
         }
@@ -35,7 +36,7 @@ TEST(ShardTest, EveryMissionIsInExactlyOneShard) {
       largest = std::max(largest, size);
     }
     std::sort(together.begin(), together.end());
-    EXPECT_EQ(together, AllMissions(layout)) << count;
+    EXPECT_EQ(together, store::AllMissions(layout)) << count;
     EXPECT_LE(largest - smallest, 1u);
   }
 }
@@ -54,29 +55,29 @@ TEST(ShardTest, EachGetsEverySiteWhateverTheirNumber) {
 }
 
 TEST(TodoTest, LeavesOutWhatIsStored) {
-  const RunLayout layout = TestLayout();
-  const std::vector<RunId> stored = {{0, 0, 0}, {0, 0, 39}, {2, 0, 1}, {2, 1, 2}};
-  const std::vector<RunId> todo = Todo(layout, 2, Shard{}, stored);
+  const store::RunLayout layout = store::TestLayout();
+  const std::vector<sweep::RunId> stored = {{0, 0, 0}, {0, 0, 39}, {2, 0, 1}, {2, 1, 2}};
+  const std::vector<sweep::RunId> todo = Todo(layout, 2, Shard{}, stored);
   EXPECT_EQ(todo.size(), 58u);
-  for (const RunId& id : stored) EXPECT_EQ(std::count(todo.begin(), todo.end(), id), 0);
+  for (const sweep::RunId& id : stored) EXPECT_EQ(std::count(todo.begin(), todo.end(), id), 0);
   EXPECT_TRUE(std::is_sorted(todo.begin(), todo.end()));
   EXPECT_TRUE(Todo(layout, 1, Shard{}, stored).empty());
 }
 
 TEST(TodoTest, ArrangesWithoutLoss) {
-  const std::vector<RunId> all = AllMissions(TestLayout());
+  const std::vector<sweep::RunId> all = store::AllMissions(store::TestLayout());
   EXPECT_EQ(Arrange(all, Order::kNatural), all);
-  std::vector<RunId> reversed = Arrange(all, Order::kReversed);
+  std::vector<sweep::RunId> reversed = Arrange(all, Order::kReversed);
   EXPECT_EQ(reversed.front(), all.back());
-  std::vector<RunId> shuffled = Arrange(all, Order::kShuffled, 1);
+  std::vector<sweep::RunId> shuffled = Arrange(all, Order::kShuffled, 1);
   EXPECT_EQ(shuffled, Arrange(all, Order::kShuffled, 1));
   EXPECT_NE(shuffled, Arrange(all, Order::kShuffled, 2));
   EXPECT_NE(shuffled, all);
-  for (std::vector<RunId>* order : {&reversed, &shuffled}) {
+  for (std::vector<sweep::RunId>* order : {&reversed, &shuffled}) {
     std::sort(order->begin(), order->end());
     EXPECT_EQ(*order, all);
   }
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::schedule

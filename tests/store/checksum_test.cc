@@ -10,7 +10,7 @@
 #include "engine/store/merge.h"
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 void Sql(const std::string& file, const std::string& sql) {
@@ -40,8 +40,8 @@ class ChecksumTest : public ::testing::Test {
   void ExpectRepairable() {
     const auto store = ResultStore::Open(Run(), TestRecipe(), TestLayout());
     store->Remove(store->FindDamage());
-    const std::vector<RunId> stored = store->Stored();
-    for (const RunId& id : AllMissions(TestLayout()))
+    const std::vector<sweep::RunId> stored = store->Stored();
+    for (const sweep::RunId& id : AllMissions(TestLayout()))
       if (!std::binary_search(stored.begin(), stored.end(), id)) store->Put(id, TestRecord(id), 0.25);
     store->Commit();
     EXPECT_EQ(DigestOfDir(Run()), digest_);
@@ -71,7 +71,8 @@ TEST_F(ChecksumTest, EveryReaderNamesAMissionWithAnotherNumber) {
   expect_named([](ResultReader& reader) { DigestOf(reader); });
   expect_named(
       [](ResultReader& reader) { reader.ForEachMission(Steps::kSkip, [](const StoredMission&) {}); });
-  expect_named([](ResultReader& reader) { reader.ForEachTimestep(2, 1, [](int, const TimestepRecord&) {}); });
+  expect_named(
+      [](ResultReader& reader) { reader.ForEachTimestep(2, 1, [](int, const mission::TimestepRecord&) {}); });
   expect_named([](ResultReader& reader) { reader.LoadMission({2, 1, 4}); });
   EXPECT_EQ(UserErrorOf([&] { MergeStores(temp_ / "new", {Run()}); }), wanted);
   EXPECT_FALSE(std::filesystem::exists(temp_ / "new"));
@@ -151,7 +152,8 @@ TEST_F(ChecksumTest, AMergeLooksAtWhatItAddsTo) {
 
 // One bit of one number in one row: named, or (the sign of a zero, the payload of a NaN) no number has changed.
 TEST_F(ChecksumTest, FlippedBitsAreNamedOrHarmless) {
-  const std::vector<Column> missions = ColumnsOf<MissionRecord>(), timesteps = ColumnsOf<TimestepRecord>();
+  const std::vector<Column> missions = ColumnsOf<mission::MissionRecord>(),
+                            timesteps = ColumnsOf<mission::TimestepRecord>();
   Stream stream(20260101, 0, Purpose::kScenario);
   int named = 0;
   for (int flip = 0; flip < 60; ++flip) {
@@ -214,4 +216,4 @@ TEST_F(ChecksumTest, FlippedBitsOfTheFileNeverChangeAMission) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

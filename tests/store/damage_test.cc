@@ -6,7 +6,7 @@
 
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,4 +98,4 @@ TEST(DamageTest, OverwrittenPagesAreFoundWhenTheyAreRead) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -4,19 +4,19 @@
 
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 class DifferenceTest : public ::testing::Test {
  protected:
   // Two runs with every third mission; `change` alters what the second puts, or leaves it out.
-  RunDifference Diff(const std::function<bool(const RunId&, MissionRecord&)>& change) {
+  RunDifference Diff(const std::function<bool(const sweep::RunId&, mission::MissionRecord&)>& change) {
     const std::string a = temp_ / fmt::format("a{}", ++pairs_), b = temp_ / fmt::format("b{}", pairs_);
     const auto first = ResultStore::Open(a, TestRecipe(), TestLayout());
     const auto second = ResultStore::Open(b, TestRecipe(), TestLayout());
-    const std::vector<RunId> all = AllMissions(TestLayout());
+    const std::vector<sweep::RunId> all = AllMissions(TestLayout());
     for (std::size_t i = 0; i < all.size(); i += 3) {
-      MissionRecord record = Long(all[i]);
+      mission::MissionRecord record = Long(all[i]);
       first->Put(all[i], record, 0);
       if (change(all[i], record)) second->Put(all[i], record, 0);
     }
@@ -26,8 +26,8 @@ class DifferenceTest : public ::testing::Test {
     return DiffRuns(here, there);
   }
 
-  static MissionRecord Long(const RunId& id) {
-    MissionRecord record = TestRecord(id);
+  static mission::MissionRecord Long(const sweep::RunId& id) {
+    mission::MissionRecord record = TestRecord(id);
     record.steps.resize(5);
     for (int k = 1; k <= 5; ++k) record.steps[static_cast<std::size_t>(k - 1)].k = k;
     return record;
@@ -38,14 +38,14 @@ class DifferenceTest : public ::testing::Test {
 };
 
 TEST_F(DifferenceTest, NothingDiffers) {
-  const RunDifference difference = Diff([](const RunId&, MissionRecord&) { return true; });
+  const RunDifference difference = Diff([](const sweep::RunId&, mission::MissionRecord&) { return true; });
   EXPECT_FALSE(difference.first);
   EXPECT_EQ(difference.compared, 34);
   EXPECT_EQ(difference.differing, 0);
 }
 
 TEST_F(DifferenceTest, TheFirstTimestepAndQuantityAreNamed) {
-  const RunDifference difference = Diff([](const RunId& id, MissionRecord& record) {
+  const RunDifference difference = Diff([](const sweep::RunId& id, mission::MissionRecord& record) {
     if (id.stage == 2) {
       record.total_j = 12.5;
       record.steps[3].scs = 0.25;
@@ -63,7 +63,7 @@ TEST_F(DifferenceTest, TheFirstTimestepAndQuantityAreNamed) {
 }
 
 TEST_F(DifferenceTest, OfTheRecordAloneWhereTimestepsAgree) {
-  const RunDifference difference = Diff([](const RunId& id, MissionRecord& record) {
+  const RunDifference difference = Diff([](const sweep::RunId& id, mission::MissionRecord& record) {
     if (id.stage == 0 && id.mission == 6) record.halts += 1;
     return true;
   });
@@ -75,7 +75,7 @@ TEST_F(DifferenceTest, OfTheRecordAloneWhereTimestepsAgree) {
 }
 
 TEST_F(DifferenceTest, AShorterMissionAndAMissingOne) {
-  const RunDifference shorter = Diff([](const RunId& id, MissionRecord& record) {
+  const RunDifference shorter = Diff([](const sweep::RunId& id, mission::MissionRecord& record) {
     if (id.mission == 9) record.steps.pop_back();
     return true;
   });
@@ -83,7 +83,8 @@ TEST_F(DifferenceTest, AShorterMissionAndAMissingOne) {
   EXPECT_EQ(shorter.first->timestep, 5);
   EXPECT_EQ(shorter.first->quantity, "timestep");
   EXPECT_EQ(shorter.first->here, "flown");
-  const RunDifference missing = Diff([](const RunId& id, MissionRecord&) { return id.mission != 9; });
+  const RunDifference missing =
+      Diff([](const sweep::RunId& id, mission::MissionRecord&) { return id.mission != 9; });
   ASSERT_TRUE(missing.first);
   EXPECT_EQ(missing.first->mission, "stage warmup, arm warmup, mission 9");
   EXPECT_EQ(missing.first->quantity, "mission");
@@ -92,4 +93,4 @@ TEST_F(DifferenceTest, AShorterMissionAndAMissingOne) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -7,10 +7,10 @@
 #include "engine/core/sha256.h"
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
-std::string DigestOfRun(const std::vector<RunId>& order, std::size_t group, const Recipe& recipe,
+std::string DigestOfRun(const std::vector<sweep::RunId>& order, std::size_t group, const Recipe& recipe,
                         double wall_s) {
   const TempDir temp;
   {
@@ -26,7 +26,7 @@ std::string DigestOfRun(const std::vector<RunId>& order, std::size_t group, cons
 }
 
 TEST(DigestTest, DependsOnResultsAlone) {
-  std::vector<RunId> order = AllMissions(TestLayout());
+  std::vector<sweep::RunId> order = AllMissions(TestLayout());
   const std::string digest = DigestOfRun(order, order.size(), TestRecipe(), 1.0);
   EXPECT_EQ(DigestOfRun(order, 1, TestRecipe(), 1.0), digest) << "groups";
   EXPECT_EQ(DigestOfRun(order, 13, TestRecipe(), 2.0), digest) << "wall time";
@@ -60,13 +60,13 @@ void ExpectEveryColumnCounts(const std::function<std::string(const std::function
 }
 
 TEST(DigestTest, EveryColumnCounts) {
-  ExpectEveryColumnCounts<MissionRecord>([](const auto& change) {
-    MissionRecord record = TestRecord({0, 0, 1});
+  ExpectEveryColumnCounts<mission::MissionRecord>([](const auto& change) {
+    mission::MissionRecord record = TestRecord({0, 0, 1});
     change(record);
     return DigestOf(record);
   });
-  ExpectEveryColumnCounts<TimestepRecord>([](const auto& change) {
-    MissionRecord record;
+  ExpectEveryColumnCounts<mission::TimestepRecord>([](const auto& change) {
+    mission::MissionRecord record;
     record.steps.resize(2);
     change(record.steps[1]);
     return DigestOf(record);
@@ -75,9 +75,9 @@ TEST(DigestTest, EveryColumnCounts) {
 
 TEST(DigestTest, StageArmAndMissionCount) {
   std::set<std::string> digests;
-  const MissionRecord record = TestRecord({0, 0, 0});
-  const std::vector<RunId> places = {{0, 0, 0}, {0, 0, 1}, {2, 0, 0}, {2, 1, 0}};
-  for (const RunId& id : places) {
+  const mission::MissionRecord record = TestRecord({0, 0, 0});
+  const std::vector<sweep::RunId> places = {{0, 0, 0}, {0, 0, 1}, {2, 0, 0}, {2, 1, 0}};
+  for (const sweep::RunId& id : places) {
     const TempDir temp;
     ResultStore::Open(temp / "run", TestRecipe(), TestLayout())->Put(id, record, 0);
     const auto store = ResultStore::Open(temp / "run", TestRecipe(), TestLayout());
@@ -117,14 +117,15 @@ TEST(DigestTest, IsTheDocumentedFormat) {
     sha.Update(bytes);
     return sha.Hex();
   };
-  const MissionRecord record = TestRecord({2, 1, 4});
-  std::string steps = text(names(TimestepRecord{})) + number(static_cast<std::int64_t>(record.steps.size()));
-  for (const TimestepRecord& step : record.steps) steps += values(step);
-  const std::string mission = text("online") + text("ed3r-75") + number(4) + text(names(MissionRecord{})) +
-                              values(record) + text(sha256(steps));
+  const mission::MissionRecord record = TestRecord({2, 1, 4});
+  std::string steps =
+      text(names(mission::TimestepRecord{})) + number(static_cast<std::int64_t>(record.steps.size()));
+  for (const mission::TimestepRecord& step : record.steps) steps += values(step);
+  const std::string mission = text("online") + text("ed3r-75") + number(4) +
+                              text(names(mission::MissionRecord{})) + values(record) + text(sha256(steps));
   EXPECT_EQ(DigestOfDir(temp / "run"), sha256(text("ed3r results 2") + sha256(mission)));
   EXPECT_GT(record.steps.size(), 0u);
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -5,7 +5,7 @@
 #include "engine/store/checksums.h"
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,7 +40,7 @@ void ExpectThreeMissionsOfRbs(const std::string& dir) {
   reader.ForEachMission(Steps::kLoad, [&](const StoredMission& mission) {
     timesteps += mission.record.timesteps;
     total_j += mission.record.total_j;
-    for (const TimestepRecord& step : mission.record.steps) ++steps, steps_j += step.total_j;
+    for (const mission::TimestepRecord& step : mission.record.steps) ++steps, steps_j += step.total_j;
   });
   EXPECT_EQ(steps, timesteps);
   EXPECT_GT(steps, 3);
@@ -88,17 +88,17 @@ TEST(FormatTest, AColumnThatTheFileLacksHasItsInitialValue) {
     EXPECT_FALSE(tables.complete());
     Statement put(database,
                   "UPDATE missions SET checksum = ?, steps_checksum = ? WHERE run = ? AND mission = ?");
-    for (const RunId& id : {RunId{0, 0, 0}, RunId{2, 1, 3}}) {
+    for (const sweep::RunId& id : {sweep::RunId{0, 0, 0}, sweep::RunId{2, 1, 3}}) {
       const Checksums checksums = tables.Of(TestLayout(), id, TestRecord(id));
       put.Run(checksums.mission, checksums.steps, TestLayout().RunIndex(id), std::int64_t{id.mission});
     }
   }
   ResultReader reader(temp / "run");
   EXPECT_EQ(reader.FindDamage().size(), 0u);
-  MissionRecord wanted = TestRecord({2, 1, 3});
-  wanted.network = MissionRecord{}.network;
+  mission::MissionRecord wanted = TestRecord({2, 1, 3});
+  wanted.network = mission::MissionRecord{}.network;
   EXPECT_EQ(wanted.network, -1);
-  for (TimestepRecord& step : wanted.steps) step.rate_bps = TimestepRecord{}.rate_bps;
+  for (mission::TimestepRecord& step : wanted.steps) step.rate_bps = mission::TimestepRecord{}.rate_bps;
   EXPECT_EQ(CanonicalBytes(reader.LoadMission({2, 1, 3}).record), CanonicalBytes(wanted));
   // Its missing columns are no part of what is checked, all others are.
   Sql(ResultsIn(temp / "run"), "UPDATE missions SET halts = halts + 1 WHERE run = 3");
@@ -108,19 +108,19 @@ TEST(FormatTest, AColumnThatTheFileLacksHasItsInitialValue) {
 }
 
 TEST(FormatTest, ColumnsInAnotherOrderAreTheSameRecord) {
-  const StoredColumns<MissionRecord> known([] {
+  const StoredColumns<mission::MissionRecord> known([] {
     std::vector<std::string> names;
-    for (const Column& column : ColumnsOf<MissionRecord>()) names.push_back(column.name);
+    for (const Column& column : ColumnsOf<mission::MissionRecord>()) names.push_back(column.name);
     return names;
   }());
   std::string bytes, wanted;
   known.Append(bytes, TestRecord({0, 0, 0}));
   AppendColumns(wanted, TestRecord({0, 0, 0}));
   EXPECT_EQ(bytes, wanted);
-  const StoredColumns<MissionRecord> two({"halts", "scenario"});
+  const StoredColumns<mission::MissionRecord> two({"halts", "scenario"});
   EXPECT_EQ(two.names(), "halts, scenario");
   bytes.clear();
-  MissionRecord record;
+  mission::MissionRecord record;
   record.scenario = 3;
   record.halts = 5;
   two.Append(bytes, record);
@@ -128,8 +128,8 @@ TEST(FormatTest, ColumnsInAnotherOrderAreTheSameRecord) {
   AppendInt(wanted, 5);
   AppendInt(wanted, 3);
   EXPECT_EQ(bytes, wanted);
-  EXPECT_EQ(StoredColumns<MissionRecord>({"halts", "sceanrio"}).unknown(), "sceanrio");
+  EXPECT_EQ(StoredColumns<mission::MissionRecord>({"halts", "sceanrio"}).unknown(), "sceanrio");
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -5,11 +5,11 @@
 #include "engine/store/merge.h"
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
-Arm ArmOf(const std::string& name, const std::string& strategy, double mass_kg = 1.8) {
-  Arm arm;
+sweep::Arm ArmOf(const std::string& name, const std::string& strategy, double mass_kg = 1.8) {
+  sweep::Arm arm;
   arm.name = name;
   arm.config.mission.strategy = strategy;
   arm.config.robot.mass_kg = mass_kg;
@@ -17,8 +17,8 @@ Arm ArmOf(const std::string& name, const std::string& strategy, double mass_kg =
 }
 
 // One stage, an axis of masses.
-SweepPlan Masses(const std::vector<double>& masses_kg, int missions) {
-  SweepPlan plan{.name = "masses", .question = "", .file = "", .seed = 7, .stages = {Stage()}};
+sweep::SweepPlan Masses(const std::vector<double>& masses_kg, int missions) {
+  sweep::SweepPlan plan{.name = "masses", .question = "", .file = "", .seed = 7, .stages = {sweep::Stage()}};
   plan.stages[0].name = "online";
   plan.stages[0].missions = missions;
   for (const double mass_kg : masses_kg)
@@ -27,13 +27,13 @@ SweepPlan Masses(const std::vector<double>& masses_kg, int missions) {
 }
 
 // Warm-up, training, online.
-SweepPlan Learning(const std::vector<std::string>& warmups, int warmup_missions, int online_missions) {
-  SweepPlan plan{.name = "learning", .question = "", .file = "", .seed = 7, .stages = {}};
+sweep::SweepPlan Learning(const std::vector<std::string>& warmups, int warmup_missions, int online_missions) {
+  sweep::SweepPlan plan{.name = "learning", .question = "", .file = "", .seed = 7, .stages = {}};
   plan.stages.push_back(
       {.name = "warmup", .after = {}, .missions = warmup_missions, .precision = {}, .arms = {}});
   for (const std::string& name : warmups) plan.stages[0].arms.push_back(ArmOf(name, "random"));
   plan.stages.push_back({.name = "training",
-                         .kind = StageKind::kTrain,
+                         .kind = sweep::StageKind::kTrain,
                          .after = {"warmup"},
                          .precision = {},
                          .arms = {ArmOf("training", "rbs")}});
@@ -45,36 +45,37 @@ SweepPlan Learning(const std::vector<std::string>& warmups, int warmup_missions,
   return plan;
 }
 
-Recipe RecipeOf(const SweepPlan& plan) {
+Recipe RecipeOf(const sweep::SweepPlan& plan) {
   Recipe recipe = TestRecipe();
   recipe.plan_text = plan.CanonicalText();
   return recipe;
 }
 
-std::unique_ptr<ResultStore> Open(const std::string& dir, const SweepPlan& plan) {
+std::unique_ptr<ResultStore> Open(const std::string& dir, const sweep::SweepPlan& plan) {
   return ResultStore::Open(dir, RecipeOf(plan), LayoutOf(plan));
 }
 
 // What an arm's mission leaves, wherever the arm stands in the plan.
-MissionRecord RecordOf(const SweepPlan& plan, const RunId& id) {
-  const Arm& arm = plan.stages[static_cast<std::size_t>(id.stage)].arms[static_cast<std::size_t>(id.arm)];
+mission::MissionRecord RecordOf(const sweep::SweepPlan& plan, const sweep::RunId& id) {
+  const sweep::Arm& arm =
+      plan.stages[static_cast<std::size_t>(id.stage)].arms[static_cast<std::size_t>(id.arm)];
   int key = 0;
   for (const char c : arm.name) key = (31 * key + c) % 1009;
   return TestRecord({id.stage, key, id.mission});
 }
 
 // Flies what is missing, of one part of `parts`.
-void Fly(const std::string& dir, const SweepPlan& plan, int part = 0, int parts = 1) {
+void Fly(const std::string& dir, const sweep::SweepPlan& plan, int part = 0, int parts = 1) {
   const auto store = Open(dir, plan);
-  const std::vector<RunId> stored = store->Stored();
-  for (const RunId& id : AllMissions(LayoutOf(plan)))
+  const std::vector<sweep::RunId> stored = store->Stored();
+  for (const sweep::RunId& id : AllMissions(LayoutOf(plan)))
     if (LayoutOf(plan).LinearIndex(id) % parts == part &&
         !std::binary_search(stored.begin(), stored.end(), id))
       store->Put(id, RecordOf(plan, id), 0.25);
   store->Commit();
 }
 
-void PutNetwork(const std::string& dir, const SweepPlan& plan, const std::string& sha256) {
+void PutNetwork(const std::string& dir, const sweep::SweepPlan& plan, const std::string& sha256) {
   Open(dir, plan)->PutNetworks(
       {.files = {{sha256, {"a network", "bytes"}}}, .uses = {{2, 0, 0, "rc", sha256}}});
 }
@@ -82,12 +83,12 @@ void PutNetwork(const std::string& dir, const SweepPlan& plan, const std::string
 class GrowthTest : public ::testing::Test {
  protected:
   std::string Dir() const { return temp_ / "run"; }
-  std::string Fresh(const SweepPlan& plan) const {
+  std::string Fresh(const sweep::SweepPlan& plan) const {
     Fly(temp_ / "fresh", plan);
     return DigestOfDir(temp_ / "fresh");
   }
   // The error of opening it with this plan, which changes nothing.
-  std::string Refused(const SweepPlan& plan) const {
+  std::string Refused(const sweep::SweepPlan& plan) const {
     const std::string before = ReadPlan(), digest = DigestOfDir(Dir());
     const std::string error = UserErrorOf([&] { Open(Dir(), plan); });
     EXPECT_EQ(ReadPlan(), before);
@@ -101,7 +102,7 @@ class GrowthTest : public ::testing::Test {
 
 TEST_F(GrowthTest, MoreMissionsAreARunOfThatManyFromTheStart) {
   Fly(Dir(), Masses({1, 2}, 10));
-  const SweepPlan more = Masses({1, 2}, 20);
+  const sweep::SweepPlan more = Masses({1, 2}, 20);
   {
     const auto store = Open(Dir(), more);
     EXPECT_EQ(store->Grown(), "stage online: 20 missions per arm for 10");
@@ -114,9 +115,9 @@ TEST_F(GrowthTest, MoreMissionsAreARunOfThatManyFromTheStart) {
 }
 
 TEST_F(GrowthTest, AValueMoreOnAnAxisMovesTheArmsBehindIt) {
-  const SweepPlan few = Masses({1, 3}, 10), more = Masses({0.5, 1, 2, 3}, 12);
+  const sweep::SweepPlan few = Masses({1, 3}, 10), more = Masses({0.5, 1, 2, 3}, 12);
   Fly(Dir(), few);
-  const SweepPlan mixed = Masses({3, 1}, 10);
+  const sweep::SweepPlan mixed = Masses({3, 1}, 10);
   {
     const auto store = Open(Dir(), mixed);
     EXPECT_EQ(store->Grown(), "its arms in another order");
@@ -127,7 +128,7 @@ TEST_F(GrowthTest, AValueMoreOnAnAxisMovesTheArmsBehindIt) {
     EXPECT_EQ(
         store->Grown(),
         "stage online: 12 missions per arm for 10; stage online: arms added: rbs,mass_kg=0.5, rbs,mass_kg=2");
-    EXPECT_EQ(store->Stored().front(), (RunId{0, 1, 0}));
+    EXPECT_EQ(store->Stored().front(), (sweep::RunId{0, 1, 0}));
   }
   ResultReader reader(Dir());
   EXPECT_EQ(reader.Status()[1].done, 10);
@@ -138,7 +139,7 @@ TEST_F(GrowthTest, AValueMoreOnAnAxisMovesTheArmsBehindIt) {
 }
 
 TEST_F(GrowthTest, WhatHasFailedIsStillTheSameMissions) {
-  const SweepPlan plan = Masses({1, 3}, 10);
+  const sweep::SweepPlan plan = Masses({1, 3}, 10);
   {
     const auto store = Open(Dir(), plan);
     store->PutFailure({0, 1, 3}, {"exception", "broken"});
@@ -147,7 +148,7 @@ TEST_F(GrowthTest, WhatHasFailedIsStillTheSameMissions) {
   Open(Dir(), Masses({1, 2, 3}, 10));
   const std::vector<FailedMission> failures = ResultReader(Dir()).Failures();
   ASSERT_EQ(failures.size(), 1u);
-  EXPECT_EQ(failures[0].id, (RunId{0, 2, 3}));
+  EXPECT_EQ(failures[0].id, (sweep::RunId{0, 2, 3}));
 }
 
 TEST_F(GrowthTest, WhatWouldChangeStoredMissionsIsRefusedWithTheDifference) {
@@ -157,7 +158,7 @@ TEST_F(GrowthTest, WhatWouldChangeStoredMissionsIsRefusedWithTheDifference) {
             head + "stage online has 10 missions per arm there and 9 here, and none is taken out" + tail);
   EXPECT_EQ(Refused(Masses({1, 3}, 10)),
             head + "stage online: arm rbs,mass_kg=2 is there, but not here" + tail);
-  SweepPlan other = Masses({1, 2, 3}, 20);
+  sweep::SweepPlan other = Masses({1, 2, 3}, 20);
   other.seed = 8;
   EXPECT_EQ(Refused(other), head + "the seed is 7 there and 8 here" + tail);
   other = Masses({1, 2, 3}, 20);
@@ -168,12 +169,12 @@ TEST_F(GrowthTest, WhatWouldChangeStoredMissionsIsRefusedWithTheDifference) {
   EXPECT_EQ(Refused(other),
             head + "arm rbs,mass_kg=1: mission.first_scenario is 0 there and 100 here" + tail);
   other = Masses({1, 2}, 20);
-  other.stages[0].precision = Precision{"msr_pct", 2, 140};
+  other.stages[0].precision = sweep::Precision{"msr_pct", 2, 140};
   EXPECT_EQ(Refused(other), head + "stage online has another precision there than here" + tail);
 }
 
 TEST_F(GrowthTest, OtherCodeOrAnotherWorldIsNotGrowth) {
-  const SweepPlan few = Masses({1}, 10), more = Masses({1}, 20);
+  const sweep::SweepPlan few = Masses({1}, 10), more = Masses({1}, 20);
   Fly(Dir(), few);
   Recipe recipe = RecipeOf(more);
   recipe.code["flight"] = {"ffff"};
@@ -197,7 +198,7 @@ TEST_F(GrowthTest, OtherCodeOrAnotherWorldIsNotGrowth) {
 }
 
 TEST_F(GrowthTest, AWarmUpThatNetworksHaveLearnedFromStaysAsItIs) {
-  const SweepPlan plan = Learning({"warmup"}, 10, 8);
+  const sweep::SweepPlan plan = Learning({"warmup"}, 10, 8);
   Fly(Dir(), plan);
   PutNetwork(Dir(), plan, "00ff");
   EXPECT_TRUE(Contains(
@@ -209,7 +210,7 @@ TEST_F(GrowthTest, AWarmUpThatNetworksHaveLearnedFromStaysAsItIs) {
                        "warmup/another here"));
   EXPECT_EQ(Open(Dir(), Learning({"warmup", "another"}, 10, 8))->Grown(),
             "stage warmup: arms added: another");
-  const SweepPlan more = Learning({"warmup", "another"}, 10, 16);
+  const sweep::SweepPlan more = Learning({"warmup", "another"}, 10, 16);
   EXPECT_EQ(Open(Dir(), more)->Grown(), "stage online: 16 missions per arm for 8");
   const FlownNetworks networks = ResultReader(Dir()).Networks();
   ASSERT_EQ(networks.uses.size(), 1u);
@@ -224,7 +225,7 @@ TEST_F(GrowthTest, AWarmUpThatNobodyHasLearnedFromMayGrow) {
 }
 
 TEST_F(GrowthTest, ShardsGrowOneByOneAndMergeIntoTheRunOfBefore) {
-  const SweepPlan few = Masses({1, 3}, 10), more = Masses({1, 2, 3}, 15);
+  const sweep::SweepPlan few = Masses({1, 3}, 10), more = Masses({1, 2, 3}, 15);
   for (int part = 0; part < 2; ++part) Fly(temp_ / fmt::format("part{}", part), few, part, 2);
   const std::vector<std::string> parts = {temp_ / "part0", temp_ / "part1"};
   MergeStores(Dir(), parts);
@@ -237,4 +238,4 @@ TEST_F(GrowthTest, ShardsGrowOneByOneAndMergeIntoTheRunOfBefore) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -6,7 +6,7 @@
 #include "engine/store/sqlite.h"
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 // Of TestLayout(): the warm-up keeps all timesteps, the online stage those that `online` says.
@@ -20,15 +20,15 @@ Recipe RecipeThatKeeps(const std::string& online) {
 }
 
 // As TestRecord, with every outcome among them.
-MissionRecord Flown(const RunId& id) {
-  MissionRecord record = TestRecord(id);
+mission::MissionRecord Flown(const sweep::RunId& id) {
+  mission::MissionRecord record = TestRecord(id);
   record.outcome = id.mission % 3;
   return record;
 }
 
 void WriteFlown(const std::string& dir, const std::string& online, int shard = 0, int shards = 1) {
   const auto store = ResultStore::Open(dir, RecipeThatKeeps(online), TestLayout());
-  const std::vector<RunId> all = AllMissions(TestLayout());
+  const std::vector<sweep::RunId> all = AllMissions(TestLayout());
   for (std::size_t i = static_cast<std::size_t>(shard); i < all.size(); i += static_cast<std::size_t>(shards))
     store->Put(all[i], Flown(all[i]), 0.25);
   store->Commit();
@@ -82,8 +82,8 @@ TEST_F(KeptTimestepsTest, ShardsMakeTheWhole) {
 }
 
 TEST_F(KeptTimestepsTest, AFlightThatDiffersInATimestepIsSeenWithoutThem) {
-  const RunId id{2, 0, 7};
-  MissionRecord record = Flown(id);
+  const sweep::RunId id{2, 0, 7};
+  mission::MissionRecord record = Flown(id);
   ASSERT_FALSE(record.steps.empty());
   ResultReader none(temp_ / "none");
   EXPECT_TRUE(none.IsStored(record, none.LoadMission(id)));
@@ -129,11 +129,12 @@ TEST_F(KeptTimestepsTest, WhatNeedsThemRefuses) {
 }
 
 TEST(KeptTimestepsOfPlanTest, ReadsThemByStage) {
-  EXPECT_EQ(ReadKeptTimesteps(RecipeThatKeeps("failed").plan_text),
-            (std::vector{KeptTimesteps::kAll, KeptTimesteps::kAll, KeptTimesteps::kFailed}));
+  EXPECT_EQ(
+      sweep::ReadKeptTimesteps(RecipeThatKeeps("failed").plan_text),
+      (std::vector{sweep::KeptTimesteps::kAll, sweep::KeptTimesteps::kAll, sweep::KeptTimesteps::kFailed}));
   EXPECT_TRUE(
-      Contains(UserErrorOf([] { ReadKeptTimesteps("stage=a\ntimesteps=some\n"); }), "timesteps=some"));
+      Contains(UserErrorOf([] { sweep::ReadKeptTimesteps("stage=a\ntimesteps=some\n"); }), "timesteps=some"));
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

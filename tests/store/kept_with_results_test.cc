@@ -9,7 +9,7 @@
 #include "engine/store/restored_files.h"
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -189,4 +189,4 @@ TEST(RestoredFilesTest, AChangedCopyIsDamageAndANameLeadsNowhereElse) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

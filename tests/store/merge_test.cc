@@ -2,14 +2,14 @@
 
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<RunId> Every(int step, int first) {
-  std::vector<RunId> some;
-  const std::vector<RunId> all = AllMissions(TestLayout());
+std::vector<sweep::RunId> Every(int step, int first) {
+  std::vector<sweep::RunId> some;
+  const std::vector<sweep::RunId> all = AllMissions(TestLayout());
   for (std::size_t i = first; i < all.size(); i += step) some.push_back(all[i]);
   return some;
 }
@@ -62,8 +62,8 @@ TEST_F(MergeTest, IntoOneOfThem) {
 
 // Stores mission {2, 0, 7} with one column off by one unit in the last place.
 void WriteConflict(const std::string& dir, bool in_step) {
-  const RunId id{2, 0, 7};
-  MissionRecord record = TestRecord(id);
+  const sweep::RunId id{2, 0, 7};
+  mission::MissionRecord record = TestRecord(id);
   ASSERT_GT(record.steps.size(), 0u);
   double& value = in_step ? record.steps.back().scs : record.total_j;
   value = std::nextafter(value, 1e9);
@@ -128,7 +128,7 @@ TEST_F(MergeTest, AFailureCountsOnlyWhereNobodyHasTheMission) {
   EXPECT_EQ(summary.failed, 1);
   const std::vector<FailedMission> failures = ResultReader(temp_ / "out").Failures();
   ASSERT_EQ(failures.size(), 1u);
-  EXPECT_EQ(failures[0].id, (RunId{0, 0, 2}));
+  EXPECT_EQ(failures[0].id, (sweep::RunId{0, 0, 2}));
   EXPECT_EQ(failures[0].message, "flown by shard 2");
   EXPECT_EQ(MergeStores(temp_ / "out", Shards()).failed, 0);
   EXPECT_EQ(DigestOfDir(temp_ / "out"), DigestOfDir(temp_ / "whole"));
@@ -140,4 +140,4 @@ TEST_F(MergeTest, ADirectoryWithAWriterIsRefused) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

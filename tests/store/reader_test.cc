@@ -10,17 +10,17 @@
 
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 TEST(ReaderTest, MissionsComeInPlanOrderWhateverTheOrderOfArrival) {
   const TempDir temp;
-  std::vector<RunId> all = AllMissions(TestLayout());
+  std::vector<sweep::RunId> all = AllMissions(TestLayout());
   std::reverse(all.begin(), all.end());
   WriteStore(temp / "run", all);
   std::reverse(all.begin(), all.end());
   ResultReader reader(temp / "run");
-  std::vector<RunId> seen;
+  std::vector<sweep::RunId> seen;
   reader.ForEachMission(Steps::kLoad, [&](const StoredMission& mission) {
     seen.push_back(mission.id);
     EXPECT_EQ(CanonicalBytes(mission.record), CanonicalBytes(TestRecord(mission.id)));
@@ -35,21 +35,23 @@ TEST(ReaderTest, OneArmAlone) {
   const TempDir temp;
   WriteStore(temp / "run", AllMissions(TestLayout()));
   ResultReader reader(temp / "run");
-  std::vector<RunId> seen;
+  std::vector<sweep::RunId> seen;
   reader.ForEachMission(2, 1, Steps::kSkip, [&](const StoredMission& mission) {
     seen.push_back(mission.id);
     EXPECT_TRUE(mission.record.steps.empty());
     EXPECT_EQ(mission.record.total_j, TestRecord(mission.id).total_j);
   });
   ASSERT_EQ(seen.size(), 30u);
-  EXPECT_EQ(seen.front(), (RunId{2, 1, 0}));
-  EXPECT_EQ(seen.back(), (RunId{2, 1, 29}));
+  EXPECT_EQ(seen.front(), (sweep::RunId{2, 1, 0}));
+  EXPECT_EQ(seen.back(), (sweep::RunId{2, 1, 29}));
 
   std::vector<std::pair<int, double>> steps, wanted;
-  reader.ForEachTimestep(
-      2, 1, [&](int mission, const TimestepRecord& step) { steps.emplace_back(mission, step.total_j); });
-  for (const RunId& id : seen)
-    for (const TimestepRecord& step : TestRecord(id).steps) wanted.emplace_back(id.mission, step.total_j);
+  reader.ForEachTimestep(2, 1, [&](int mission, const mission::TimestepRecord& step) {
+    steps.emplace_back(mission, step.total_j);
+  });
+  for (const sweep::RunId& id : seen)
+    for (const mission::TimestepRecord& step : TestRecord(id).steps)
+      wanted.emplace_back(id.mission, step.total_j);
   EXPECT_EQ(steps, wanted);
 }
 
@@ -120,7 +122,7 @@ TEST(ReaderTest, StatusCountsDoneFailedAndMissing) {
 // A reader looks on while a writer commits: it always sees whole groups of five, and never fewer than before.
 TEST(ReaderTest, LooksOnWhileAnotherWrites) {
   const TempDir temp;
-  const std::vector<RunId> all = AllMissions(TestLayout());
+  const std::vector<sweep::RunId> all = AllMissions(TestLayout());
   auto store = ResultStore::Open(temp / "run", TestRecipe(), TestLayout());
   std::atomic<bool> done{false};
   std::atomic<int> looks{0};
@@ -128,7 +130,7 @@ TEST(ReaderTest, LooksOnWhileAnotherWrites) {
     ResultReader reader(temp / "run");
     std::size_t before = 0;
     while (!done) {
-      const std::vector<RunId> stored = reader.Stored();
+      const std::vector<sweep::RunId> stored = reader.Stored();
       EXPECT_EQ(stored.size() % 5, 0u);
       EXPECT_GE(stored.size(), before);
       before = stored.size();
@@ -154,4 +156,4 @@ TEST(ReaderTest, LooksOnWhileAnotherWrites) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -6,12 +6,12 @@
 #include "engine/store/columns.h"
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
-const RunId kFirst{0, 0, 0};
+const sweep::RunId kFirst{0, 0, 0};
 
-MissionRecord ThroughStore(const MissionRecord& record) {
+mission::MissionRecord ThroughStore(const mission::MissionRecord& record) {
   const TempDir temp;
   {
     const auto store = ResultStore::Open(temp / "run", TestRecipe(), TestLayout());
@@ -21,34 +21,34 @@ MissionRecord ThroughStore(const MissionRecord& record) {
   return ResultReader(temp / "run").LoadMission(kFirst).record;
 }
 
-std::vector<std::int64_t> Bits(const TimestepRecord& step) {
+std::vector<std::int64_t> Bits(const mission::TimestepRecord& step) {
   std::vector<std::int64_t> bits;
-  TimestepRecord::Describe(
+  mission::TimestepRecord::Describe(
       step, [&](std::string_view, const auto& field) { bits.push_back(std::bit_cast<std::int64_t>(field)); });
   return bits;
 }
 
 // Stores the values in a real column, one timestep each.
 std::vector<double> ThroughStore(const std::vector<double>& values) {
-  MissionRecord record;
+  mission::MissionRecord record;
   for (double value : values) {
-    TimestepRecord& step = record.steps.emplace_back();
+    mission::TimestepRecord& step = record.steps.emplace_back();
     step.k = static_cast<std::int64_t>(record.steps.size());
     step.reward = value;
   }
   std::vector<double> back;
-  for (const TimestepRecord& step : ThroughStore(record).steps) back.push_back(step.reward);
+  for (const mission::TimestepRecord& step : ThroughStore(record).steps) back.push_back(step.reward);
   return back;
 }
 
 TEST(RoundTripTest, EveryColumnKeepsItsPlace) {
-  MissionRecord record = TestRecord(kFirst);
+  mission::MissionRecord record = TestRecord(kFirst);
   Stream stream(3, 0, Purpose::kScenario);
   for (int k = 1; k <= 20; ++k) {
     FillColumns(stream, record.steps.emplace_back());
     record.steps.back().k = 100 + k;
   }
-  const MissionRecord back = ThroughStore(record);
+  const mission::MissionRecord back = ThroughStore(record);
   ASSERT_EQ(back.steps.size(), record.steps.size());
   for (std::size_t i = 0; i < back.steps.size(); ++i) EXPECT_EQ(Bits(back.steps[i]), Bits(record.steps[i]));
   EXPECT_EQ(CanonicalBytes(back), CanonicalBytes(record));
@@ -101,11 +101,11 @@ TEST(RoundTripTest, NanAndNegativeZeroComeBackCanonical) {
 }
 
 TEST(RoundTripTest, IntegerExtremes) {
-  MissionRecord record;
+  mission::MissionRecord record;
   record.scenario = std::numeric_limits<std::int64_t>::max();
   record.site = std::numeric_limits<std::int64_t>::min();
   record.base_station = -1;
-  const MissionRecord back = ThroughStore(record);
+  const mission::MissionRecord back = ThroughStore(record);
   EXPECT_EQ(back.scenario, record.scenario);
   EXPECT_EQ(back.site, record.site);
   EXPECT_EQ(back.base_station, record.base_station);
@@ -114,7 +114,7 @@ TEST(RoundTripTest, IntegerExtremes) {
 
 // A digest taken in memory (replay) must equal the one of what is stored.
 TEST(RoundTripTest, DigestOfARecordOutlivesTheStore) {
-  MissionRecord record = TestRecord(kFirst);
+  mission::MissionRecord record = TestRecord(kFirst);
   record.steps.resize(3);
   for (std::size_t i = 0; i < 3; ++i) record.steps[i].k = static_cast<std::int64_t>(i) + 1;
   record.distance_m = -0.0;
@@ -127,7 +127,7 @@ TEST(RoundTripTest, DigestOfARecordOutlivesTheStore) {
 TEST(RoundTripTest, TimestepsMustBeNumberedUpwards) {
   const TempDir temp;
   const auto store = ResultStore::Open(temp / "run", TestRecipe(), TestLayout());
-  MissionRecord record;
+  mission::MissionRecord record;
   record.steps.resize(2);
   record.steps[0].k = 2;
   record.steps[1].k = 2;
@@ -136,8 +136,8 @@ TEST(RoundTripTest, TimestepsMustBeNumberedUpwards) {
   record.steps[1].k = 3;
   store->Put(kFirst, record, 0);
   store->Commit();
-  EXPECT_EQ(store->Stored(), std::vector<RunId>{kFirst});
+  EXPECT_EQ(store->Stored(), std::vector<sweep::RunId>{kFirst});
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

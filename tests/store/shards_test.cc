@@ -9,17 +9,17 @@
 #include "engine/store/tally.h"
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
 
 // The missions of TestLayout() dealt among as many stores.
 std::vector<std::string> WriteShards(const std::string& run, int shards) {
-  const std::vector<RunId> all = AllMissions(TestLayout());
+  const std::vector<sweep::RunId> all = AllMissions(TestLayout());
   std::vector<std::string> dirs;
   for (int shard = 0; shard < shards; ++shard) {
-    std::vector<RunId> mine;
+    std::vector<sweep::RunId> mine;
     for (std::size_t i = static_cast<std::size_t>(shard); i < all.size();
          i += static_cast<std::size_t>(shards))
       mine.push_back(all[i]);
@@ -125,4 +125,4 @@ TEST(FinishedTest, NotWhileAnotherProcessWrites) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

@@ -18,7 +18,7 @@
 #include "engine/store/schema.h"
 #include "engine/store/store.h"
 
-namespace ed3r {
+namespace ed3r::store {
 
 class TempDir {
  public:
@@ -65,8 +65,8 @@ inline RunLayout TestLayout() {
                      {.name = "online", .missions = 30, .arms = {{"rbs", 5000}, {"ed3r-75", 5000}}}}};
 }
 
-inline std::vector<RunId> AllMissions(const RunLayout& layout) {
-  std::vector<RunId> all;
+inline std::vector<sweep::RunId> AllMissions(const RunLayout& layout) {
+  std::vector<sweep::RunId> all;
   for (int s = 0; s < static_cast<int>(layout.stages.size()); ++s)
     for (int a = 0; a < static_cast<int>(layout.stages[s].arms.size()); ++a)
       for (int m = 0; m < layout.stages[s].missions; ++m) all.push_back({s, a, m});
@@ -84,10 +84,10 @@ void FillColumns(Stream& stream, Record& record) {
 }
 
 // The record that mission `id` would leave: every column drawn from a stream of its own.
-inline MissionRecord TestRecord(const RunId& id) {
+inline mission::MissionRecord TestRecord(const sweep::RunId& id) {
   Stream stream(static_cast<std::uint64_t>(id.stage),
                 static_cast<std::uint32_t>(id.arm * 100000 + id.mission), Purpose::kScenario);
-  MissionRecord record;
+  mission::MissionRecord record;
   FillColumns(stream, record);
   const auto timesteps = stream.Below(8);
   for (std::uint32_t k = 1; k <= timesteps; ++k) {
@@ -121,11 +121,11 @@ inline ::testing::AssertionResult Contains(const std::string& text, const std::s
 }
 
 // A store with these missions, all in one group.
-inline void WriteStore(const std::string& dir, const std::vector<RunId>& missions,
+inline void WriteStore(const std::string& dir, const std::vector<sweep::RunId>& missions,
                        const Recipe& recipe = TestRecipe()) {
   const auto store = ResultStore::Open(dir, recipe, TestLayout());
-  for (const RunId& id : missions) store->Put(id, TestRecord(id), 0.25);
+  for (const sweep::RunId& id : missions) store->Put(id, TestRecord(id), 0.25);
   store->Commit();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::store

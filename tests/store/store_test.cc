@@ -9,7 +9,7 @@
 
 #include "tests/store/store_fixture.h"
 
-namespace ed3r {
+namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,9 +33,9 @@ TEST(StoreTest, ContinuesWhereItStopped) {
   const TempDir temp;
   WriteStore(temp / "a/b/run", {{0, 0, 3}, {2, 1, 0}});
   const auto store = OpenTest(temp / "a/b/run");
-  EXPECT_EQ(store->Stored(), (std::vector<RunId>{{0, 0, 3}, {2, 1, 0}}));
+  EXPECT_EQ(store->Stored(), (std::vector<sweep::RunId>{{0, 0, 3}, {2, 1, 0}}));
   store->Put({0, 0, 1}, TestRecord({0, 0, 1}), 0.5);
-  EXPECT_EQ(store->Stored(), (std::vector<RunId>{{0, 0, 1}, {0, 0, 3}, {2, 1, 0}}));
+  EXPECT_EQ(store->Stored(), (std::vector<sweep::RunId>{{0, 0, 1}, {0, 0, 3}, {2, 1, 0}}));
 }
 
 TEST(StoreTest, WhatIsNotCommittedIsDropped) {
@@ -46,7 +46,7 @@ TEST(StoreTest, WhatIsNotCommittedIsDropped) {
     store->Commit();
     store->Put({0, 0, 1}, TestRecord({0, 0, 1}), 0);
   }
-  EXPECT_EQ(OpenTest(temp / "run")->Stored(), (std::vector<RunId>{{0, 0, 0}}));
+  EXPECT_EQ(OpenTest(temp / "run")->Stored(), (std::vector<sweep::RunId>{{0, 0, 0}}));
 }
 
 TEST(StoreTest, AFinishedDirectoryIsOneFile) {
@@ -68,14 +68,15 @@ TEST(StoreTest, AMissionIsStoredOnce) {
   EXPECT_THROW(store->Put({0, 0, 0}, TestRecord({0, 0, 0}), 0), InternalError);
   EXPECT_THROW(store->Commit(), InternalError) << "half a group must not be committed";
   EXPECT_THROW(store->Put({0, 0, 2}, TestRecord({0, 0, 2}), 0), InternalError);
-  EXPECT_EQ(store->Stored(), (std::vector<RunId>{{0, 0, 0}}));
+  EXPECT_EQ(store->Stored(), (std::vector<sweep::RunId>{{0, 0, 0}}));
 }
 
 TEST(StoreTest, MissionsOutsideThePlanAreRefused) {
   const TempDir temp;
   const auto store = OpenTest(temp / "run");
-  for (const RunId& id : {RunId{0, 0, 40}, RunId{0, 1, 0}, RunId{1, 0, 0}, RunId{3, 0, 0}, RunId{0, 0, -1}}) {
-    EXPECT_THROW(store->Put(id, MissionRecord{}, 0), InternalError);
+  for (const sweep::RunId& id : {sweep::RunId{0, 0, 40}, sweep::RunId{0, 1, 0}, sweep::RunId{1, 0, 0},
+                                 sweep::RunId{3, 0, 0}, sweep::RunId{0, 0, -1}}) {
+    EXPECT_THROW(store->Put(id, mission::MissionRecord{}, 0), InternalError);
     EXPECT_THROW(store->PutFailure(id, {"exception", "x"}), InternalError);
   }
 }
@@ -93,8 +94,8 @@ TEST(StoreTest, FailuresAreKeptUntilTheMissionSucceeds) {
   {
     const std::vector<FailedMission> failures = ResultReader(temp / "run").Failures();
     ASSERT_EQ(failures.size(), 2u);
-    EXPECT_EQ(failures[0].id, (RunId{2, 0, 1}));
-    EXPECT_EQ(failures[1].id, (RunId{2, 1, 4}));
+    EXPECT_EQ(failures[0].id, (sweep::RunId{2, 0, 1}));
+    EXPECT_EQ(failures[1].id, (sweep::RunId{2, 1, 4}));
     EXPECT_EQ(failures[1].kind, "ledger-adds-up");
     EXPECT_EQ(failures[1].message, "second message");
     EXPECT_EQ(failures[1].scenario, 5004);
@@ -104,7 +105,7 @@ TEST(StoreTest, FailuresAreKeptUntilTheMissionSucceeds) {
   WriteStore(temp / "run", {{2, 1, 4}});
   const std::vector<FailedMission> left = ResultReader(temp / "run").Failures();
   ASSERT_EQ(left.size(), 1u);
-  EXPECT_EQ(left[0].id, (RunId{2, 0, 1}));
+  EXPECT_EQ(left[0].id, (sweep::RunId{2, 0, 1}));
   EXPECT_NE(DigestOfDir(temp / "run"), before);
 }
 
@@ -205,7 +206,7 @@ void KillWriter(const Write& write) {
 
 TEST(StoreTest, AKillCostsOnlyTheOpenGroup) {
   const TempDir temp;
-  const std::vector<RunId> all = AllMissions(TestLayout());
+  const std::vector<sweep::RunId> all = AllMissions(TestLayout());
   KillWriter([&](const auto& say_ready) {
     const auto store = OpenTest(temp / "run");
     for (std::size_t i = 0; i < 60; ++i) {
@@ -216,7 +217,7 @@ TEST(StoreTest, AKillCostsOnlyTheOpenGroup) {
     say_ready();
     pause();
   });
-  EXPECT_EQ(ResultReader(temp / "run").Stored(), std::vector<RunId>(all.begin(), all.begin() + 60))
+  EXPECT_EQ(ResultReader(temp / "run").Stored(), std::vector<sweep::RunId>(all.begin(), all.begin() + 60))
       << "a reader sees the committed groups at once, before anybody repaired anything";
   WriteStore(temp / "run", {all.begin() + 60, all.end()});
   WriteStore(temp / "whole", all);
@@ -256,7 +257,7 @@ class FileSizeLimit {
 
 TEST(StoreTest, AFullDiskKeepsWhatWasCommitted) {
   const TempDir temp;
-  const std::vector<RunId> all = AllMissions(TestLayout());
+  const std::vector<sweep::RunId> all = AllMissions(TestLayout());
   std::size_t committed = 0;
   bool failed = false;
   {
@@ -276,11 +277,12 @@ TEST(StoreTest, AFullDiskKeepsWhatWasCommitted) {
   }
   ASSERT_TRUE(failed);
   ASSERT_GT(committed, 0u);
-  EXPECT_EQ(ResultReader(temp / "run").Stored(), std::vector<RunId>(all.begin(), all.begin() + committed));
+  EXPECT_EQ(ResultReader(temp / "run").Stored(),
+            std::vector<sweep::RunId>(all.begin(), all.begin() + committed));
   WriteStore(temp / "run", {all.begin() + committed, all.end()});
   WriteStore(temp / "whole", all);
   EXPECT_EQ(DigestOfDir(temp / "run"), DigestOfDir(temp / "whole"));
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::store

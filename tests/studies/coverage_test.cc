@@ -22,7 +22,7 @@ double Coverage(int repetitions, double truth, Draw draw) {
   int held = 0;
   for (int r = 0; r < repetitions; ++r) {
     Stream stream(11, static_cast<std::uint32_t>(r), Purpose::kBootstrap);
-    const Interval interval = draw(stream);
+    const statistics::Interval interval = draw(stream);
     held += interval.lo <= truth && truth <= interval.hi;
   }
   return static_cast<double>(held) / repetitions;
@@ -56,7 +56,7 @@ struct EnergyArm {
     std::vector<double> energy, wasted;
     return Coverage(repetitions, Mean(), [&](Stream& stream) {
       Draw(stream, n, energy, wasted);
-      return MeanInterval(energy);
+      return statistics::MeanInterval(energy);
     });
   }
 
@@ -64,7 +64,7 @@ struct EnergyArm {
     std::vector<double> energy, wasted;
     return Coverage(repetitions, Wasted() / Mean(), [&](Stream& stream) {
       Draw(stream, n, energy, wasted);
-      return ShareInterval(wasted, energy, ShareUnit::kMission);
+      return statistics::ShareInterval(wasted, energy, statistics::ShareUnit::kMission);
     });
   }
 };
@@ -104,7 +104,7 @@ TEST(CoverageTest, RateOf850Missions) {
     ExpectNominal(Coverage(4000, rate, [rate](Stream& stream) {
       int events = 0;
       for (int i = 0; i < 850; ++i) events += stream.Uniform() < rate;
-      return RateInterval(events, 850);
+      return statistics::RateInterval(events, 850);
     }));
   }
 }
@@ -139,7 +139,7 @@ TEST(CoverageTest, ShareOfTimestepsClusteredInMissions) {
   const auto share = [&](int n) {
     return [&, n](Stream& stream) {
       arm.Draw(stream, n, part, whole);
-      return ShareInterval(part, whole, ShareUnit::kTimestep);
+      return statistics::ShareInterval(part, whole, statistics::ShareUnit::kTimestep);
     };
   };
   ExpectNominal(Coverage(1000, arm.Share(), share(850)));
@@ -155,7 +155,7 @@ TEST(CoverageTest, PooledTimestepsAreOverconfident) {
     arm.Draw(stream, 850, part, whole);
     double offloads = 0, steps = 0;
     for (std::size_t i = 0; i < part.size(); ++i) offloads += part[i], steps += whole[i];
-    return RateInterval(std::llround(offloads), std::llround(steps));
+    return statistics::RateInterval(std::llround(offloads), std::llround(steps));
   });
   EXPECT_LT(coverage, 0.85);
 }
@@ -173,7 +173,7 @@ TEST(CoverageTest, MeanConfidenceOfReliableTimesteps) {
         for (int k = 0; k < steps; ++k) scs += mission + stream.Uniform(-0.02, 0.02);
         sum.push_back(scs), count.push_back(steps);
       }
-      return RatioInterval(sum, count);
+      return statistics::RatioInterval(sum, count);
     }));
   }
 }
@@ -189,7 +189,7 @@ TEST(CoverageTest, MeanPower) {
       const double d = Exponential(stream, mean_s);
       time.push_back(d), energy.push_back(d * (120 + d / 60 + stream.Uniform(-8, 8)));
     }
-    return RatioInterval(energy, time);
+    return statistics::RatioInterval(energy, time);
   }));
 }
 
@@ -201,7 +201,7 @@ TEST(CoverageTest, EightyFifthPercentile) {
       sorted.clear();
       for (int i = 0; i < n; ++i) sorted.push_back(Exponential(stream, mean_min));
       std::sort(sorted.begin(), sorted.end());
-      return QuantileInterval(sorted, 85);
+      return statistics::QuantileInterval(sorted, 85);
     });
     EXPECT_GE(coverage, 0.945);  // at least 95 % by construction
     EXPECT_LE(coverage, 0.985);

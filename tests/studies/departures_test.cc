@@ -24,11 +24,11 @@ namespace {
 const std::set<std::string> kPaperWorld = {"worlds/paper.yaml"};
 
 std::string PlanOfSweep(const std::string& name) {
-  return LoadSweep(fmt::format("{}/sweeps/{}.yaml", ED3R_SOURCE_DIR, name), {}).CanonicalText();
+  return sweep::LoadSweep(fmt::format("{}/sweeps/{}.yaml", ED3R_SOURCE_DIR, name), {}).CanonicalText();
 }
 
-Departures Of(const std::string& plan, const std::string& variant = "") {
-  return DeparturesOf(plan, variant, kPaperWorld);
+report::Departures Of(const std::string& plan, const std::string& variant = "") {
+  return report::DeparturesOf(plan, variant, kPaperWorld);
 }
 
 // `text` with the first line that begins with "KEY=" after `after` replaced.
@@ -41,12 +41,12 @@ std::string With(std::string text, const std::string& after, const std::string& 
 TEST(DeparturesTest, SweepsOfThePaperFlyThePaper) {
   for (const char* sweep : {"paper", "default_world", "smoke", "thresholds", "ablations", "baselines", "rbs",
                             "warmup", "look_level"}) {
-    const Departures found = Of(PlanOfSweep(sweep));
-    EXPECT_TRUE(found.PaperFlown()) << sweep << ": " << DepartureText(found.results);
-    EXPECT_TRUE(found.aside.empty()) << sweep << ": " << DepartureText(found.aside);
+    const report::Departures found = Of(PlanOfSweep(sweep));
+    EXPECT_TRUE(found.PaperFlown()) << sweep << ": " << report::DepartureText(found.results);
+    EXPECT_TRUE(found.aside.empty()) << sweep << ": " << report::DepartureText(found.aside);
   }
   EXPECT_TRUE(Of(PlanOfSweep("paper")).effort.empty());
-  EXPECT_EQ(DepartureText(Of(PlanOfSweep("smoke")).effort),
+  EXPECT_EQ(report::DepartureText(Of(PlanOfSweep("smoke")).effort),
             "missions of warmup 60 for 2040; missions of online 56 for 850; training.learning_rate 0.0001 "
             "for 5e-06; "
             "training.epochs 40 for 2000");
@@ -56,9 +56,9 @@ TEST(DeparturesTest, EveryParameterThatIsNotEffortDoes) {
   const std::string paper = PlanOfSweep("paper");
   for (const ParameterInfo& parameter : Parameters()) {
     if (parameter.scope != Scope::kMission) continue;
-    const Departures found = Of(With(paper, "arm=ed3r-75", parameter.key, "another"));
+    const report::Departures found = Of(With(paper, "arm=ed3r-75", parameter.key, "another"));
     const bool effort = parameter.key.starts_with("training.") || parameter.key == "mission.first_scenario";
-    const std::vector<Departure>& list = effort ? found.effort : found.results;
+    const std::vector<report::Departure>& list = effort ? found.effort : found.results;
     EXPECT_EQ(found.results.size() + found.aside.size() + found.effort.size(), 1u) << parameter.key;
     ASSERT_EQ(list.size(), 1u) << parameter.key;
     EXPECT_EQ(list[0].key, parameter.key);
@@ -69,52 +69,52 @@ TEST(DeparturesTest, EveryParameterThatIsNotEffortDoes) {
 
 TEST(DeparturesTest, TheNameOfAnArmPromisesItsStrategyThresholdAndSites) {
   const std::string paper = PlanOfSweep("paper");
-  EXPECT_EQ(DepartureText(Of(With(paper, "arm=ed3r-85", "agents.eta_min", "0.75")).results),
+  EXPECT_EQ(report::DepartureText(Of(With(paper, "arm=ed3r-85", "agents.eta_min", "0.75")).results),
             "agents.eta_min 0.75 for 0.85 in ed3r-85");
-  EXPECT_EQ(DepartureText(Of(With(paper, "arm=rbs", "mission.strategy", "look-level")).results),
+  EXPECT_EQ(report::DepartureText(Of(With(paper, "arm=rbs", "mission.strategy", "look-level")).results),
             "mission.strategy look-level for rbs in rbs");
-  EXPECT_EQ(DepartureText(Of(With(paper, "arm=rbs", "mission.sites", "known")).results),
+  EXPECT_EQ(report::DepartureText(Of(With(paper, "arm=rbs", "mission.sites", "known")).results),
             "mission.sites known for all in rbs");
-  EXPECT_EQ(DepartureText(Of(With(paper, "arm=warmup", "mission.sites", "all")).results),
+  EXPECT_EQ(report::DepartureText(Of(With(paper, "arm=warmup", "mission.sites", "all")).results),
             "mission.sites all for known in warmup");
 }
 
 TEST(DeparturesTest, AnArmOfOnesOwnKeepsNothingFromBeingJudged) {
   std::string plan = PlanOfSweep("look_level");
   plan = With(plan, "arm=look-level", "robot.mass_kg", "2.4");
-  const Departures found = Of(plan);
+  const report::Departures found = Of(plan);
   EXPECT_TRUE(found.PaperFlown());
-  EXPECT_EQ(DepartureText(found.aside), "robot.mass_kg 2.4 for 1.816");
+  EXPECT_EQ(report::DepartureText(found.aside), "robot.mass_kg 2.4 for 1.816");
 }
 
 TEST(DeparturesTest, AWarmUpOfAnotherNameIsWhatNetworksLearnFrom) {
   std::string plan = With(PlanOfSweep("paper"), "arm=warmup", "robot.mass_kg", "2.4");
   plan.replace(plan.find("arm=warmup\n"), 10, "arm=mine");
-  EXPECT_EQ(DepartureText(Of(plan).results), "robot.mass_kg 2.4 for 1.816 in mine");
+  EXPECT_EQ(report::DepartureText(Of(plan).results), "robot.mass_kg 2.4 for 1.816 in mine");
 }
 
 TEST(DeparturesTest, AWorldIsWhatIsInItsFiles) {
   const std::string paper = PlanOfSweep("rbs");
-  EXPECT_EQ(DepartureText(DeparturesOf(paper, "", {}).results),
+  EXPECT_EQ(report::DepartureText(report::DeparturesOf(paper, "", {}).results),
             "mission.world worlds/paper.yaml of other content for worlds/paper.yaml");
   const std::string elsewhere = With(paper, "arm=rbs", "mission.world", "../copy.yaml");
-  EXPECT_EQ(DepartureText(Of(elsewhere).results), "mission.world ../copy.yaml for worlds/paper.yaml");
-  EXPECT_TRUE(DeparturesOf(elsewhere, "", {"../copy.yaml"}).PaperFlown());
+  EXPECT_EQ(report::DepartureText(Of(elsewhere).results), "mission.world ../copy.yaml for worlds/paper.yaml");
+  EXPECT_TRUE(report::DeparturesOf(elsewhere, "", {"../copy.yaml"}).PaperFlown());
 }
 
 TEST(DeparturesTest, ThePaperWorldIsAllThatItsFileReads) {
   const std::string folder = std::string(ED3R_SOURCE_DIR) + "/sweeps/worlds/";
-  const WorldSpec spec = ReadWorldFile(folder + "paper.yaml");
+  const world::WorldSpec spec = world::ReadWorldFile(folder + "paper.yaml");
   std::vector<std::string> read = {folder + "paper.yaml"};
   read.insert(read.end(), spec.bases.begin(), spec.bases.end());
   EXPECT_FALSE(spec.grid) << "then it belongs to the list, too";
   EXPECT_FALSE(spec.forest && spec.forest->stem_map);
-  ASSERT_EQ(read.size(), PaperWorldFiles().size());
+  ASSERT_EQ(read.size(), paper::PaperWorldFiles().size());
   for (std::size_t i = 0; i < read.size(); ++i) {
-    EXPECT_EQ(std::filesystem::path(read[i]).filename(), PaperWorldFiles()[i].name);
+    EXPECT_EQ(std::filesystem::path(read[i]).filename(), paper::PaperWorldFiles()[i].name);
     Sha256 sha;
     sha.Update(ReadFile(read[i], kMaxTextBytes));
-    EXPECT_EQ(sha.Hex(), PaperWorldFiles()[i].sha256);
+    EXPECT_EQ(sha.Hex(), paper::PaperWorldFiles()[i].sha256);
   }
 }
 
@@ -122,51 +122,55 @@ TEST(DeparturesTest, EachVariantIsComparedByItself) {
   const std::string plan = PlanOfSweep("sensitivity");
   EXPECT_TRUE(Of(plan, "base").PaperFlown());
   EXPECT_TRUE(Of(plan, "other-networks").PaperFlown());
-  EXPECT_EQ(DepartureText(Of(plan, "R8-battery-4S").results), "robot.battery_v 14.8 for 11.1");
-  EXPECT_EQ(DepartureText(Of(PlanOfSweep("tiers"), "pixels").results), "perception.tier pixels for profile");
+  EXPECT_EQ(report::DepartureText(Of(plan, "R8-battery-4S").results), "robot.battery_v 14.8 for 11.1");
+  EXPECT_EQ(report::DepartureText(Of(PlanOfSweep("tiers"), "pixels").results),
+            "perception.tier pixels for profile");
   EXPECT_FALSE(Of(PlanOfSweep("matched"), "m01").PaperFlown());
   EXPECT_TRUE(Of(PlanOfSweep("matched"), "paper").PaperFlown());
 }
 
-RunDepartures Heavy() { return {{"", Of(With(PlanOfSweep("rbs"), "arm=rbs", "robot.mass_kg", "2.4"))}}; }
+report::RunDepartures Heavy() {
+  return {{"", Of(With(PlanOfSweep("rbs"), "arm=rbs", "robot.mass_kg", "2.4"))}};
+}
 
 TEST(DeparturesTest, AReportThatDepartsHasNoVerdictsUnlessTheyAreAskedFor) {
-  const RunResults run{.name = "mine", .arms = {MakeArm({"rbs", 34})}};
-  const Report judged = MakeReport(run, {}), left_out = MakeReport(run, Heavy());
-  const Report asked = MakeReport(run, Heavy(), Judging::kEverything);
+  const report::RunResults run{.name = "mine", .arms = {claims::MakeArm({"rbs", 34})}};
+  const report::Report judged = report::MakeReport(run, {}), left_out = report::MakeReport(run, Heavy());
+  const report::Report asked = report::MakeReport(run, Heavy(), report::Judging::kEverything);
   ASSERT_TRUE(judged.claims.HasArms());
-  EXPECT_EQ(ReportText(judged).find("Not as in the paper"), std::string::npos);
-  EXPECT_TRUE(ReportJson(judged).at("paper").at("paper_flown"));
-  EXPECT_FALSE(ReportJson(judged).at("claims").empty());
+  EXPECT_EQ(report::ReportText(judged).find("Not as in the paper"), std::string::npos);
+  EXPECT_TRUE(report::ReportJson(judged).at("paper").at("paper_flown"));
+  EXPECT_FALSE(report::ReportJson(judged).at("claims").empty());
 
   EXPECT_FALSE(left_out.claims.HasArms());
-  EXPECT_NE(
-      ReportText(left_out).find("\nNot as in the paper: robot.mass_kg 2.4 for 1.816. So its claims are not "
-                                "judged; 'ed3r report DIR"),
-      std::string::npos)
-      << ReportText(left_out).substr(0, 400);
-  EXPECT_TRUE(ReportJson(left_out).at("claims").empty());
-  EXPECT_FALSE(ReportJson(left_out).at("paper").at("claims_judged"));
-  EXPECT_EQ(ReportJson(left_out).at("paper").at("results").at(0).at("parameter"), "robot.mass_kg");
-  EXPECT_EQ(ReportJson(left_out).at("arms"), ReportJson(judged).at("arms"));
+  EXPECT_NE(report::ReportText(left_out).find(
+                "\nNot as in the paper: robot.mass_kg 2.4 for 1.816. So its claims are not "
+                "judged; 'ed3r report DIR"),
+            std::string::npos)
+      << report::ReportText(left_out).substr(0, 400);
+  EXPECT_TRUE(report::ReportJson(left_out).at("claims").empty());
+  EXPECT_FALSE(report::ReportJson(left_out).at("paper").at("claims_judged"));
+  EXPECT_EQ(report::ReportJson(left_out).at("paper").at("results").at(0).at("parameter"), "robot.mass_kg");
+  EXPECT_EQ(report::ReportJson(left_out).at("arms"), report::ReportJson(judged).at("arms"));
 
-  EXPECT_EQ(ReportJson(asked).at("claims"), ReportJson(judged).at("claims"));
-  EXPECT_NE(ReportText(asked).find("judged all the same (--claims)"), std::string::npos);
+  EXPECT_EQ(report::ReportJson(asked).at("claims"), report::ReportJson(judged).at("claims"));
+  EXPECT_NE(report::ReportText(asked).find("judged all the same (--claims)"), std::string::npos);
 }
 
 TEST(DeparturesTest, OfVariantsTheOneThatIsThePapersIsJudgedAlone) {
-  const RunResults run{.name = "mine", .arms = {MakeArm({"rbs@base", 34}), MakeArm({"rbs@heavy", 44})}};
-  const RunDepartures departures = {{"base", {}}, {"heavy", Heavy().at("")}};
-  const Report report = MakeReport(run, departures);
+  const report::RunResults run{
+      .name = "mine", .arms = {claims::MakeArm({"rbs@base", 34}), claims::MakeArm({"rbs@heavy", 44})}};
+  const report::RunDepartures departures = {{"base", {}}, {"heavy", Heavy().at("")}};
+  const report::Report report = report::MakeReport(run, departures);
   EXPECT_TRUE(report.claims.HasArms());
   EXPECT_TRUE(report.variants.verdicts.empty());
   EXPECT_FALSE(report.variants.differences.empty());
-  EXPECT_EQ(VariantText(report.variants).find("Claims of the paper"), std::string::npos);
+  EXPECT_EQ(variants::VariantText(report.variants).find("Claims of the paper"), std::string::npos);
   ASSERT_EQ(report.DepartureNotes().size(), 1u);
   EXPECT_TRUE(report.DepartureNotes()[0].starts_with("1 of 2 variants are not as in the paper (heavy)"));
-  const Report asked = MakeReport(run, departures, Judging::kEverything);
+  const report::Report asked = report::MakeReport(run, departures, report::Judging::kEverything);
   EXPECT_EQ(asked.variants.verdicts.size(), 2u);
-  EXPECT_NE(VariantText(asked.variants).find("Claims of the paper"), std::string::npos);
+  EXPECT_NE(variants::VariantText(asked.variants).find("Claims of the paper"), std::string::npos);
 }
 
 }  // namespace

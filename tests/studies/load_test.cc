@@ -8,7 +8,7 @@
 namespace ed3r {
 namespace {
 
-RunLayout Layout() {
+store::RunLayout Layout() {
   return {.name = "baselines",
           .seed = 7,
           .stages = {{.name = "warmup", .missions = 2, .arms = {{"warmup", 0}}},
@@ -16,8 +16,8 @@ RunLayout Layout() {
                      {.name = "online", .missions = 8, .arms = {{"rbs", 5000}, {"ed3r-75", 5000}}}}};
 }
 
-MissionRecord Mission(int number) {
-  MissionRecord mission = FiveMissions().missions[static_cast<std::size_t>(number)];
+mission::MissionRecord Mission(int number) {
+  mission::MissionRecord mission = FiveMissions().missions[static_cast<std::size_t>(number)];
   mission.scenario = 5000 + number;
   for (int k = 1; k <= 3; ++k) mission.steps.emplace_back().k = k;
   return mission;
@@ -25,23 +25,23 @@ MissionRecord Mission(int number) {
 
 // All five missions of ed3r-75, one that failed, two that are missing; nothing of the other arms.
 void WriteRun(const std::string& dir) {
-  const auto store = ResultStore::Open(dir, TestRecipe(), Layout());
+  const auto store = store::ResultStore::Open(dir, store::TestRecipe(), Layout());
   for (const int number : {3, 1, 4, 0, 2}) store->Put({2, 1, number}, Mission(number), 0.5);
   store->PutFailure({2, 1, 6}, {"exception", "a broken invariant"});
   store->Commit();
 }
 
 TEST(LoadRunTest, GivesFlyingArmsInPlanOrder) {
-  const TempDir temp;
+  const store::TempDir temp;
   WriteRun(temp / "run");
-  const RunResults run = LoadRun(temp / "run");
+  const report::RunResults run = report::LoadRun(temp / "run");
   EXPECT_EQ(run.name, "baselines");
   ASSERT_EQ(run.arms.size(), 3u);
   EXPECT_EQ(run.arms[0].stage, "warmup");
   EXPECT_EQ(run.arms[0].missing, 2);
   EXPECT_EQ(run.arms[1].name, "rbs");
   EXPECT_EQ(run.arms[1].missing, 8);
-  const ArmData& arm = run.arms[2];
+  const metrics::ArmData& arm = run.arms[2];
   EXPECT_EQ(arm.stage, "online");
   EXPECT_EQ(arm.name, "ed3r-75");
   EXPECT_EQ(arm.failed, 1);
@@ -54,20 +54,20 @@ TEST(LoadRunTest, GivesFlyingArmsInPlanOrder) {
 }
 
 TEST(LoadRunTest, ReportOfAStoreIsTheReportOfItsMissions) {
-  const TempDir temp;
+  const store::TempDir temp;
   WriteRun(temp / "run");
-  const Report report = MakeReport(LoadRun(temp / "run"), {});
-  const ArmMetrics direct = ComputeMetrics(FiveMissions());
+  const report::Report report = report::MakeReport(report::LoadRun(temp / "run"), {});
+  const metrics::ArmMetrics direct = metrics::ComputeMetrics(FiveMissions());
   for (const char* metric : {"total_energy_kj", "mscs_pct", "wer_pct", "or_pct", "lf_accuracy_pct"}) {
     EXPECT_EQ(report.arms[2][metric].value, direct[metric].value) << metric;
     EXPECT_EQ(report.arms[2][metric].hi, direct[metric].hi) << metric;
   }
-  EXPECT_EQ(ReportJson(report).at("arms").at("rbs").at("missing"), 8);
+  EXPECT_EQ(report::ReportJson(report).at("arms").at("rbs").at("missing"), 8);
 }
 
 TEST(LoadRunTest, NoStoreIsAUserError) {
-  const TempDir temp;
-  EXPECT_TRUE(Contains(UserErrorOf([&] { LoadRun(temp / "nowhere"); }), "nowhere"));
+  const store::TempDir temp;
+  EXPECT_TRUE(store::Contains(store::UserErrorOf([&] { report::LoadRun(temp / "nowhere"); }), "nowhere"));
 }
 
 }  // namespace

@@ -56,10 +56,10 @@ void ExpectNear(double actual, double expected, const std::string& what) {
 }
 
 TEST(MetricsTest, FiveMissionsByHand) {
-  const ArmMetrics metrics = ComputeMetrics(FiveMissions());
+  const metrics::ArmMetrics metrics = metrics::ComputeMetrics(FiveMissions());
   ASSERT_EQ(metrics.values.size(), std::size(kExpected));
   for (const Expected& expected : kExpected) {
-    const MetricValue& ours = metrics[expected.metric];
+    const metrics::MetricValue& ours = metrics[expected.metric];
     const std::string name = expected.metric;
     ExpectNear(ours.value, expected.value, name);
     ExpectNear(ours.lo, expected.lo, name + " lo");
@@ -69,7 +69,7 @@ TEST(MetricsTest, FiveMissionsByHand) {
 }
 
 TEST(MetricsTest, CountsAndNamesAreKept) {
-  const ArmMetrics metrics = ComputeMetrics(FiveMissions());
+  const metrics::ArmMetrics metrics = metrics::ComputeMetrics(FiveMissions());
   EXPECT_EQ(metrics.stage, "online");
   EXPECT_EQ(metrics.name, "ed3r-75");
   EXPECT_EQ(metrics.missions, 5);
@@ -80,39 +80,41 @@ TEST(MetricsTest, CountsAndNamesAreKept) {
 // The names that scripts rely on.
 TEST(MetricsTest, NamesAreTheContract) {
   std::string names;
-  for (const MetricDefinition& metric : MetricDefinitions()) names += std::string(metric.name) + ' ';
+  for (const metrics::MetricDefinition& metric : metrics::MetricDefinitions())
+    names += std::string(metric.name) + ' ';
   EXPECT_EQ(names,
             "total_energy_kj movement_energy_kj computation_energy_kj transmission_energy_kj "
             "sensing_energy_kj mscs_pct msr_pct wer_pct fp_pct bd_pct or_pct model_full_pct model_quant_pct "
             "lf_accuracy_pct er_pct duration_mean_min duration_p85_min duration_max_min within_10min_pct "
             "timesteps_mean seconds_per_timestep mean_power_w ");
-  EXPECT_THROW(MetricIndex("msr"), InternalError);
+  EXPECT_THROW(metrics::MetricIndex("msr"), InternalError);
 }
 
 TEST(MetricsTest, OrderOfMissionsDoesNotMatter) {
-  ArmData arm = FiveMissions();
-  const ArmMetrics forward = ComputeMetrics(arm);
+  metrics::ArmData arm = FiveMissions();
+  const metrics::ArmMetrics forward = metrics::ComputeMetrics(arm);
   std::reverse(arm.missions.begin(), arm.missions.end());
-  const ArmMetrics backward = ComputeMetrics(arm);
+  const metrics::ArmMetrics backward = metrics::ComputeMetrics(arm);
   for (std::size_t i = 0; i < forward.values.size(); ++i)
-    ExpectNear(backward.values[i].value, forward.values[i].value, std::string(MetricDefinitions()[i].name));
+    ExpectNear(backward.values[i].value, forward.values[i].value,
+               std::string(metrics::MetricDefinitions()[i].name));
 }
 
 TEST(MetricsTest, NoMissionGivesNoValues) {
-  const ArmMetrics metrics =
-      ComputeMetrics({.stage = "online", .name = "rbs", .missions = {}, .missing = 850});
+  const metrics::ArmMetrics metrics =
+      metrics::ComputeMetrics({.stage = "online", .name = "rbs", .missions = {}, .missing = 850});
   EXPECT_EQ(metrics.missing, 850);
-  for (const MetricValue& ours : metrics.values) {
+  for (const metrics::MetricValue& ours : metrics.values) {
     EXPECT_TRUE(std::isnan(ours.value) && std::isnan(ours.lo) && std::isnan(ours.hi));
     EXPECT_EQ(ours.n, 0);
   }
 }
 
 TEST(MetricsTest, OneMissionGivesValuesWithoutIntervals) {
-  ArmData arm = FiveMissions();
+  metrics::ArmData arm = FiveMissions();
   arm.missions.resize(1);
-  const ArmMetrics metrics = ComputeMetrics(arm);
-  for (const MetricValue& ours : metrics.values) {
+  const metrics::ArmMetrics metrics = metrics::ComputeMetrics(arm);
+  for (const metrics::MetricValue& ours : metrics.values) {
     EXPECT_FALSE(std::isnan(ours.value));
     EXPECT_TRUE(std::isnan(ours.lo) && std::isnan(ours.hi));
   }
@@ -121,39 +123,39 @@ TEST(MetricsTest, OneMissionGivesValuesWithoutIntervals) {
 }
 
 TEST(MetricsTest, StrategiesWithoutNetworksHaveNoLookForwardAccuracy) {
-  ArmData arm = FiveMissions();
-  for (MissionRecord& mission : arm.missions) Predict(mission, 0, 0);
-  EXPECT_TRUE(std::isnan(ComputeMetrics(arm)["lf_accuracy_pct"].value));
-  for (MissionRecord& mission : arm.missions) Predict(mission, mission.timesteps, 0);
-  EXPECT_EQ(ComputeMetrics(arm)["lf_accuracy_pct"].value, 100);
+  metrics::ArmData arm = FiveMissions();
+  for (mission::MissionRecord& mission : arm.missions) Predict(mission, 0, 0);
+  EXPECT_TRUE(std::isnan(metrics::ComputeMetrics(arm)["lf_accuracy_pct"].value));
+  for (mission::MissionRecord& mission : arm.missions) Predict(mission, mission.timesteps, 0);
+  EXPECT_EQ(metrics::ComputeMetrics(arm)["lf_accuracy_pct"].value, 100);
 }
 
 TEST(MetricsTest, LookForwardAccuracyIsRelativeToTheNetworksOwnWorst) {
-  ArmData arm = FiveMissions();
+  metrics::ArmData arm = FiveMissions();
   arm.missions.resize(4);
   const double errors[] = {0.1, 0.2, 0.4, 0.8};
   for (std::size_t i = 0; i < 4; ++i) {
-    MissionRecord& mission = arm.missions[i];
+    mission::MissionRecord& mission = arm.missions[i];
     Predict(mission, mission.timesteps, errors[i] * static_cast<double>(mission.timesteps));
     mission.network = i < 2 ? 0 : 1;
   }
-  EXPECT_DOUBLE_EQ(ComputeMetrics(arm)["lf_accuracy_pct"].value, 25);  // 50, 0, 50, 0
+  EXPECT_DOUBLE_EQ(metrics::ComputeMetrics(arm)["lf_accuracy_pct"].value, 25);  // 50, 0, 50, 0
 }
 
 TEST(MetricsTest, IntervalsStayWithinWhatIsPossible) {
-  const ArmData five = FiveMissions();
+  const metrics::ArmData five = FiveMissions();
   for (std::size_t a = 0; a < 5; ++a)
     for (std::size_t b = 0; b < 5; ++b) {
-      ArmData pair = five;
+      metrics::ArmData pair = five;
       pair.missions = {five.missions[a], five.missions[b]};
-      const ArmMetrics metrics = ComputeMetrics(pair);
+      const metrics::ArmMetrics metrics = metrics::ComputeMetrics(pair);
       for (std::size_t i = 0; i < metrics.values.size(); ++i) {
-        const MetricValue& ours = metrics.values[i];
+        const metrics::MetricValue& ours = metrics.values[i];
         if (std::isnan(ours.lo)) continue;
         EXPECT_GE(ours.lo, 0);
         EXPECT_LE(ours.lo, ours.value * (1 + 1e-12));
         EXPECT_GE(ours.hi, ours.value * (1 - 1e-12));
-        if (MetricDefinitions()[i].unit == "%") {
+        if (metrics::MetricDefinitions()[i].unit == "%") {
           EXPECT_LE(ours.hi, 100);
         }
       }
@@ -162,29 +164,33 @@ TEST(MetricsTest, IntervalsStayWithinWhatIsPossible) {
 
 TEST(MetricsTest, RecordsThatCannotBeAreRefused) {
   const auto with = [](auto change) {
-    ArmData arm = FiveMissions();
+    metrics::ArmData arm = FiveMissions();
     change(arm.missions[2]);
     return arm;
   };
-  EXPECT_NO_THROW(ComputeMetrics(with([](MissionRecord&) {})));
-  EXPECT_THROW(ComputeMetrics(with([](MissionRecord& m) { m.outcome = 7; })), InternalError);
-  EXPECT_THROW(ComputeMetrics(with([](MissionRecord& m) { ++m.offloads; })), InternalError);
-  EXPECT_THROW(ComputeMetrics(with([](MissionRecord& m) { m.random_motions = 99; })), InternalError);
-  EXPECT_THROW(ComputeMetrics(with([](MissionRecord& m) { m.total_j = std::nan(""); })), InternalError);
+  EXPECT_NO_THROW(metrics::ComputeMetrics(with([](mission::MissionRecord&) {})));
+  EXPECT_THROW(metrics::ComputeMetrics(with([](mission::MissionRecord& m) { m.outcome = 7; })),
+               InternalError);
+  EXPECT_THROW(metrics::ComputeMetrics(with([](mission::MissionRecord& m) { ++m.offloads; })), InternalError);
+  EXPECT_THROW(metrics::ComputeMetrics(with([](mission::MissionRecord& m) { m.random_motions = 99; })),
+               InternalError);
+  EXPECT_THROW(metrics::ComputeMetrics(with([](mission::MissionRecord& m) { m.total_j = std::nan(""); })),
+               InternalError);
   // Hovering left out of the movement energy.
-  EXPECT_THROW(ComputeMetrics(with([](MissionRecord& m) { m.movement_j -= 1000; })), InternalError);
+  EXPECT_THROW(metrics::ComputeMetrics(with([](mission::MissionRecord& m) { m.movement_j -= 1000; })),
+               InternalError);
 }
 
 TEST(SplitTest, EveryMissionIsInOneHalf) {
-  const KnownUnseen sites = Split(FiveMissions(), SplitBy::kSite);
+  const metrics::KnownUnseen sites = metrics::Split(FiveMissions(), metrics::SplitBy::kSite);
   EXPECT_EQ(sites.known.missions.size(), 2u);
   EXPECT_EQ(sites.unseen.missions.size(), 3u);
   EXPECT_EQ(sites.unseen.name, "ed3r-75");
   EXPECT_EQ(sites.unseen.stage, "online");
-  const KnownUnseen stations = Split(FiveMissions(), SplitBy::kBaseStation);
+  const metrics::KnownUnseen stations = metrics::Split(FiveMissions(), metrics::SplitBy::kBaseStation);
   EXPECT_EQ(stations.known.missions.size(), 2u);
-  EXPECT_DOUBLE_EQ(ComputeMetrics(stations.known)["total_energy_kj"].value, (7.6 + 20) / 2);
-  EXPECT_DOUBLE_EQ(ComputeMetrics(sites.known)["total_energy_kj"].value, (7.6 + 12) / 2);
+  EXPECT_DOUBLE_EQ(metrics::ComputeMetrics(stations.known)["total_energy_kj"].value, (7.6 + 20) / 2);
+  EXPECT_DOUBLE_EQ(metrics::ComputeMetrics(sites.known)["total_energy_kj"].value, (7.6 + 12) / 2);
 }
 
 }  // namespace

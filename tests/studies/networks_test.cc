@@ -9,11 +9,11 @@ namespace ed3r {
 namespace {
 
 // 100 missions for each network, each with the given energy per mission give or take 10 %.
-ArmData ArmOf(const std::vector<double>& energies_kj) {
-  ArmData arm{"online", "ed3r-75", {}};
+metrics::ArmData ArmOf(const std::vector<double>& energies_kj) {
+  metrics::ArmData arm{"online", "ed3r-75", {}};
   for (std::size_t network = 0; network < energies_kj.size(); ++network) {
     for (int i = 0; i < 100; ++i) {
-      MissionRecord mission;
+      mission::MissionRecord mission;
       mission.network = static_cast<std::int64_t>(network);
       mission.timesteps = mission.full_local = 10;
       mission.duration_s = 100;
@@ -25,7 +25,7 @@ ArmData ArmOf(const std::vector<double>& energies_kj) {
 }
 
 TEST(NetworksTest, LuckyAndUnluckyNetworksWidenTheInterval) {
-  const MetricValue energy = ComputeMetrics(ArmOf({10, 20, 30}))["total_energy_kj"];
+  const metrics::MetricValue energy = metrics::ComputeMetrics(ArmOf({10, 20, 30}))["total_energy_kj"];
   EXPECT_NEAR(energy.value, 20 * 0.999, 1e-9);
   // By hand: three networks of 9.99, 19.98, 29.97 kJ; t with 2 degrees of freedom, 4.303 x 9.99 / sqrt(3) = 24.8.
   EXPECT_EQ(energy.lo, 0.0);
@@ -33,18 +33,18 @@ TEST(NetworksTest, LuckyAndUnluckyNetworksWidenTheInterval) {
 }
 
 TEST(NetworksTest, NetworksThatAgreeByAccidentNarrowNothing) {
-  const ArmData one = ArmOf({20});
-  ArmData three = ArmOf({20, 20, 20});
-  const MetricValue over_missions = [&] {
-    ArmData merged = three;
-    for (MissionRecord& mission : merged.missions) mission.network = 0;
-    return ComputeMetrics(merged)["total_energy_kj"];
+  const metrics::ArmData one = ArmOf({20});
+  metrics::ArmData three = ArmOf({20, 20, 20});
+  const metrics::MetricValue over_missions = [&] {
+    metrics::ArmData merged = three;
+    for (mission::MissionRecord& mission : merged.missions) mission.network = 0;
+    return metrics::ComputeMetrics(merged)["total_energy_kj"];
   }();
-  const MetricValue with_networks = ComputeMetrics(three)["total_energy_kj"];
+  const metrics::MetricValue with_networks = metrics::ComputeMetrics(three)["total_energy_kj"];
   EXPECT_EQ(with_networks.lo, over_missions.lo);
   EXPECT_EQ(with_networks.hi, over_missions.hi);
-  EXPECT_EQ(ComputeMetrics(three).networks, 3);
-  EXPECT_EQ(ComputeMetrics(one).networks, 0);
+  EXPECT_EQ(metrics::ComputeMetrics(three).networks, 3);
+  EXPECT_EQ(metrics::ComputeMetrics(one).networks, 0);
 }
 
 }  // namespace

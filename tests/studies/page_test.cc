@@ -11,20 +11,20 @@ namespace ed3r {
 namespace {
 
 // Sites 3 (missions 1 and 3, known) and 8.
-ArmData TwoSites() {
-  ArmData arm = FiveMissions();
+metrics::ArmData TwoSites() {
+  metrics::ArmData arm = FiveMissions();
   for (const std::size_t i : {0u, 2u}) arm.missions[i].site = 3;
   for (const std::size_t i : {1u, 3u, 4u}) arm.missions[i].site = 8;
   return arm;
 }
 
 TEST(PageSlicesTest, EveryFilterIsComputedByTheTablesCode) {
-  const std::vector<ArmData> arms = {TwoSites()};
-  const std::vector<ArmMetrics> metrics = {ComputeMetrics(arms[0])};
-  const auto slices = SlicesJson(arms, metrics);
+  const std::vector<metrics::ArmData> arms = {TwoSites()};
+  const std::vector<metrics::ArmMetrics> metrics = {metrics::ComputeMetrics(arms[0])};
+  const auto slices = report::SlicesJson(arms, metrics);
   EXPECT_EQ(slices.size(), 5u * 4u);  // all, known, unseen, 3, 8; every outcome and each
   const auto value = [&](const char* slice, const char* metric) {
-    return slices.at(slice).at(0).at(1 + 3 * MetricIndex(metric));
+    return slices.at(slice).at(0).at(1 + 3 * metrics::MetricIndex(metric));
   };
   EXPECT_EQ(slices.at("all|all").at(0).at(0), 5);
   EXPECT_EQ(value("all|all", "total_energy_kj"), metrics[0]["total_energy_kj"].value);
@@ -39,19 +39,20 @@ TEST(PageSlicesTest, EveryFilterIsComputedByTheTablesCode) {
 }
 
 TEST(PageSlicesTest, ManySitesComeWithoutOutcomes) {
-  ArmData arm = FiveMissions();
-  const MissionRecord mission = arm.missions[0];
-  arm.missions.assign(kMostSites + 1, mission);
+  metrics::ArmData arm = FiveMissions();
+  const mission::MissionRecord mission = arm.missions[0];
+  arm.missions.assign(report::kMostSites + 1, mission);
   for (std::size_t i = 0; i < arm.missions.size(); ++i) arm.missions[i].site = static_cast<std::int64_t>(i);
-  const auto slices = SlicesJson({&arm, 1}, std::vector<ArmMetrics>{ComputeMetrics(arm)});
+  const auto slices =
+      report::SlicesJson({&arm, 1}, std::vector<metrics::ArmMetrics>{metrics::ComputeMetrics(arm)});
   EXPECT_TRUE(slices.contains("40|all"));
   EXPECT_FALSE(slices.contains("40|0"));
   EXPECT_TRUE(slices.contains("all|0"));
 }
 
 TEST(PageSlicesTest, HistogramsCountEveryMissionThatHasTheValue) {
-  const std::vector<ArmData> arms = {TwoSites()};
-  const auto histograms = HistogramsJson(arms);
+  const std::vector<metrics::ArmData> arms = {TwoSites()};
+  const auto histograms = report::HistogramsJson(arms);
   std::vector<int> missions(histograms.at("scales").size());
   for (const auto& cell : histograms.at("cells"))
     for (std::size_t i = 5; i < cell.size(); ++i) missions[cell[3].get<std::size_t>()] += cell[i].get<int>();
@@ -62,19 +63,19 @@ TEST(PageSlicesTest, HistogramsCountEveryMissionThatHasTheValue) {
 }
 
 TEST(PageSlicesTest, PointsAreThinnedByNumber) {
-  ArmData arm = FiveMissions();
-  std::vector<std::vector<int>> numbers = {{0, 1, 2, 2 * kMostPoints, 2 * kMostPoints + 1}};
-  const auto points = PointsJson({&arm, 1}, numbers).at(0);
+  metrics::ArmData arm = FiveMissions();
+  std::vector<std::vector<int>> numbers = {{0, 1, 2, 2 * report::kMostPoints, 2 * report::kMostPoints + 1}};
+  const auto points = report::PointsJson({&arm, 1}, numbers).at(0);
   EXPECT_EQ(points.at("every"), 3);
-  EXPECT_EQ(points.at("number"), (std::vector<int>{0, 2 * kMostPoints}));
+  EXPECT_EQ(points.at("number"), (std::vector<int>{0, 2 * report::kMostPoints}));
   EXPECT_EQ(points.at("energy_kj").at(0), 7.6);
   EXPECT_EQ(points.at("energy_kj").at(1), 139.4);
 }
 
 TEST(PageSlicesTest, FailuresAreListedByCauseWithTheirNumbers) {
-  ArmData arm = FiveMissions();
+  metrics::ArmData arm = FiveMissions();
   const std::vector<std::vector<int>> numbers = {{0, 1, 5, 7, 9}};
-  const auto groups = FailuresJson({&arm, 1}, numbers);
+  const auto groups = report::FailuresJson({&arm, 1}, numbers);
   ASSERT_EQ(groups.size(), 2u);
   int found = 0;
   for (const auto& group : groups) {
@@ -88,34 +89,35 @@ TEST(PageSlicesTest, FailuresAreListedByCauseWithTheirNumbers) {
 // Nine arms of 10,000 missions at 14 sites: what grows with missions is bounded.
 TEST(PageSlicesTest, TheDataStaySmallForManyMissions) {
   constexpr int kMissions = 10000, kArms = 9, kSites = 14;
-  const ArmData five = FiveMissions();
-  ArmData arm{.stage = "online", .name = "rbs", .missions = {}};
+  const metrics::ArmData five = FiveMissions();
+  metrics::ArmData arm{.stage = "online", .name = "rbs", .missions = {}};
   std::vector<int> numbers;
   for (int i = 0; i < kMissions; ++i) {
-    MissionRecord mission = five.missions[static_cast<std::size_t>(i) % 5];
+    mission::MissionRecord mission = five.missions[static_cast<std::size_t>(i) % 5];
     mission.site = i % kSites;
     mission.site_known = mission.site < 6;
     mission.duration_s += i % 971;
     arm.missions.push_back(mission);
     numbers.push_back(i);
   }
-  const std::vector<ArmData> arms(kArms, arm);
-  const std::vector<ArmMetrics> metrics(kArms, ComputeMetrics(arm));
+  const std::vector<metrics::ArmData> arms(kArms, arm);
+  const std::vector<metrics::ArmMetrics> metrics(kArms, metrics::ComputeMetrics(arm));
   const std::vector<std::vector<int>> all_numbers(kArms, numbers);
-  const std::size_t bytes = SlicesJson(arms, metrics).dump().size() + HistogramsJson(arms).dump().size() +
-                            PointsJson(arms, all_numbers).dump().size() +
-                            FailuresJson(arms, all_numbers).dump().size();
+  const std::size_t bytes = report::SlicesJson(arms, metrics).dump().size() +
+                            report::HistogramsJson(arms).dump().size() +
+                            report::PointsJson(arms, all_numbers).dump().size() +
+                            report::FailuresJson(arms, all_numbers).dump().size();
   EXPECT_LT(bytes, 2'500'000u);
 }
 
-std::vector<std::string> Answer(std::vector<ArmData> arms, std::vector<bool> warmups) {
-  return AnswerSentences(MakeReport({.name = "x", .arms = std::move(arms)}, {}), warmups);
+std::vector<std::string> Answer(std::vector<metrics::ArmData> arms, std::vector<bool> warmups) {
+  return report::AnswerSentences(report::MakeReport({.name = "x", .arms = std::move(arms)}, {}), warmups);
 }
 
 TEST(PageAnswerTest, TellsTheStudiedArmBesideItsRival) {
-  ArmData rbs = FiveMissions();
+  metrics::ArmData rbs = FiveMissions();
   rbs.name = "rbs";
-  rbs.missions[0].outcome = static_cast<std::int64_t>(Outcome::kFalsePositive);
+  rbs.missions[0].outcome = static_cast<std::int64_t>(mission::Outcome::kFalsePositive);
   const auto sentences = Answer({FiveMissions(), rbs}, {false, false});
   ASSERT_GE(sentences.size(), 2u);
   EXPECT_TRUE(sentences[0].starts_with("ED³R-75 finds the fire in 60.0 % ("));
@@ -132,7 +134,7 @@ TEST(PageAnswerTest, WarmUpsAreNoAnswer) {
 
 TEST(WebPageTest, NoTextEndsTheElementThatHoldsIt) {
   const nlohmann::ordered_json data = {{"name", "</script><script>x"}};
-  const std::string page = SelfContainedPage("<b>&", {"program", "style"}, data, "plain");
+  const std::string page = report::SelfContainedPage("<b>&", {"program", "style"}, data, "plain");
   EXPECT_NE(page.find("<title>&lt;b&gt;&amp;</title>"), std::string::npos);
   EXPECT_NE(page.find("\\u003c/script>\\u003cscript>x"), std::string::npos);
   EXPECT_NE(page.find("<noscript>plain</noscript>"), std::string::npos);

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-RunResults OneArm() { return {.name = "paper", .arms = {FiveMissions()}}; }
+report::RunResults OneArm() { return {.name = "paper", .arms = {FiveMissions()}}; }
 
 std::string Content(const fs::path& path) {
   std::ostringstream text;
@@ -33,34 +33,37 @@ class ReportFilesTest : public testing::Test {
 };
 
 TEST(ReportTest, TextHasItsParts) {
-  const std::string text = ReportText(MakeReport(OneArm(), {}));
+  const std::string text = report::ReportText(report::MakeReport(OneArm(), {}));
   EXPECT_TRUE(text.starts_with("paper\n\nStage online\n"));
   EXPECT_NE(text.find("success (MSR)"), std::string::npos);
   EXPECT_NE(text.find("base station unseen"), std::string::npos);
 }
 
 TEST(ReportTest, RunWithoutMissionsSaysSo) {
-  EXPECT_EQ(ReportText(MakeReport({.name = "empty", .arms = {}}, {})), "empty\n\nNo missions.\n");
+  EXPECT_EQ(report::ReportText(report::MakeReport({.name = "empty", .arms = {}}, {})),
+            "empty\n\nNo missions.\n");
 }
 
 TEST(ReportTest, JsonHasArmsAndGeneralisation) {
-  const auto json = nlohmann::json::parse(ReportJson(MakeReport(OneArm(), {})).dump());
+  const auto json = nlohmann::json::parse(report::ReportJson(report::MakeReport(OneArm(), {})).dump());
   EXPECT_EQ(json.at("name"), "paper");
   EXPECT_EQ(json.at("arms").at("ed3r-75").at("msr_pct").at("mean"), 60);
   EXPECT_EQ(json.at("generalisation").at("ed3r-75").at("known-site").at("missions"), 2);
 }
 
 TEST(ReportTest, IsTheSameEveryTime) {
-  EXPECT_EQ(ReportText(MakeReport(OneArm(), {})), ReportText(MakeReport(OneArm(), {})));
-  EXPECT_EQ(ReportJson(MakeReport(OneArm(), {})).dump(), ReportJson(MakeReport(OneArm(), {})).dump());
+  EXPECT_EQ(report::ReportText(report::MakeReport(OneArm(), {})),
+            report::ReportText(report::MakeReport(OneArm(), {})));
+  EXPECT_EQ(report::ReportJson(report::MakeReport(OneArm(), {})).dump(),
+            report::ReportJson(report::MakeReport(OneArm(), {})).dump());
 }
 
 TEST_F(ReportFilesTest, AreWrittenAndReplaced) {
-  const Report report = MakeReport(OneArm(), {});
+  const report::Report report = report::MakeReport(OneArm(), {});
   for (int round = 0; round < 2; ++round) {
-    WriteReport(report, (dir_ / "deep").string());
-    EXPECT_EQ(Content(dir_ / "deep/report.txt"), ReportText(report));
-    EXPECT_EQ(nlohmann::ordered_json::parse(Content(dir_ / "deep/report.json")), ReportJson(report));
+    report::WriteReport(report, (dir_ / "deep").string());
+    EXPECT_EQ(Content(dir_ / "deep/report.txt"), report::ReportText(report));
+    EXPECT_EQ(nlohmann::ordered_json::parse(Content(dir_ / "deep/report.json")), report::ReportJson(report));
     EXPECT_TRUE(Content(dir_ / "deep/metrics.csv").starts_with("stage,arm,metric,value,lo,hi,n,paper\n"));
     EXPECT_TRUE(
         Content(dir_ / "deep/generalisation.csv").starts_with("stage,arm,place,metric,value,lo,hi,n\n"));
@@ -75,9 +78,10 @@ TEST_F(ReportFilesTest, AreWrittenAndReplaced) {
 TEST_F(ReportFilesTest, UnwritablePlacesAreUserErrors) {
   fs::create_directories(dir_ / "report.txt");  // a folder in the file's place
   std::ofstream(dir_ / "report.txt" / "x") << "x";
-  EXPECT_THROW(WriteReport(MakeReport(OneArm(), {}), dir_.string()), UserError);
+  EXPECT_THROW(report::WriteReport(report::MakeReport(OneArm(), {}), dir_.string()), UserError);
   std::ofstream(dir_ / "file") << "x";
-  EXPECT_THROW(WriteReport(MakeReport(OneArm(), {}), (dir_ / "file" / "below").string()), UserError);
+  EXPECT_THROW(report::WriteReport(report::MakeReport(OneArm(), {}), (dir_ / "file" / "below").string()),
+               UserError);
 }
 
 }  // namespace

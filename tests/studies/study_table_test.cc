@@ -10,37 +10,39 @@
 namespace ed3r {
 namespace {
 
-ArmMetrics Metrics(const std::string& name, const std::string& stage = "online") {
-  ArmData arm = FiveMissions();
+metrics::ArmMetrics Metrics(const std::string& name, const std::string& stage = "online") {
+  metrics::ArmData arm = FiveMissions();
   arm.stage = stage, arm.name = name;
-  return ComputeMetrics(arm);
+  return metrics::ComputeMetrics(arm);
 }
 
-const StudyTable* Find(const std::vector<StudyTable>& tables, const std::string& id) {
-  for (const StudyTable& table : tables)
+const tables::StudyTable* Find(const std::vector<tables::StudyTable>& tables, const std::string& id) {
+  for (const tables::StudyTable& table : tables)
     if (table.id == id) return &table;
   return nullptr;
 }
 
-std::vector<std::string> ArmNames(const StudyTable& table) {
+std::vector<std::string> ArmNames(const tables::StudyTable& table) {
   std::vector<std::string> names;
-  for (const ArmMetrics& arm : table.arms) names.push_back(arm.name);
+  for (const metrics::ArmMetrics& arm : table.arms) names.push_back(arm.name);
   return names;
 }
 
-StudyTable OneCell() {
+tables::StudyTable OneCell() {
   return {.id = "one",
           .title = "A & B",
           .arms = {Metrics("ed3r-75")},
           .labels = {"ED³R-75"},
-          .metrics = {MetricIndex("msr_pct"), MetricIndex("duration_max_min")}};
+          .metrics = {metrics::MetricIndex("msr_pct"), metrics::MetricIndex("duration_max_min")}};
 }
 
 TEST(StudyTableTest, ARunOfThePaperHasItsTables) {
-  const std::vector<ArmMetrics> arms = {Metrics("warmup", "warmup"), Metrics("ed3r-65"), Metrics("ed3r-75"),
-                                        Metrics("ed3r-85"),          Metrics("ecd2r"),   Metrics("rbs")};
-  const std::vector<ArmMetrics> p85 = {Metrics("ed3r-p85"), Metrics("rbs-p85"), Metrics("ed3r-65-p85")};
-  const auto tables = MakeStudyTables(arms, p85);
+  const std::vector<metrics::ArmMetrics> arms = {
+      Metrics("warmup", "warmup"), Metrics("ed3r-65"), Metrics("ed3r-75"),
+      Metrics("ed3r-85"),          Metrics("ecd2r"),   Metrics("rbs")};
+  const std::vector<metrics::ArmMetrics> p85 = {Metrics("ed3r-p85"), Metrics("rbs-p85"),
+                                                Metrics("ed3r-65-p85")};
+  const auto tables = tables::MakeStudyTables(arms, p85);
   ASSERT_EQ(tables.size(), 3u);
   EXPECT_EQ(ArmNames(tables[0]).size(), 6u);
   EXPECT_EQ(ArmNames(*Find(tables, "thresholds")),
@@ -51,19 +53,22 @@ TEST(StudyTableTest, ARunOfThePaperHasItsTables) {
 }
 
 TEST(StudyTableTest, ArmsOfDifferentStagesAreNotCompared) {
-  EXPECT_EQ(MakeStudyTables(std::vector{Metrics("ed3r-75", "one"), Metrics("rbs", "two")}, {}).size(), 1u);
+  EXPECT_EQ(tables::MakeStudyTables(std::vector{Metrics("ed3r-75", "one"), Metrics("rbs", "two")}, {}).size(),
+            1u);
 }
 
 TEST(StudyTableTest, ArmsWithoutMissionsAreLeftOut) {
-  const ArmData none{.stage = "online", .name = "ed3r-65", .missions = {}, .failed = 0, .missing = 5};
-  EXPECT_TRUE(MakeStudyTables(std::vector{ComputeMetrics(none)}, {}).empty());
-  const auto tables = MakeStudyTables(std::vector{ComputeMetrics(none), Metrics("mine")}, {});
+  const metrics::ArmData none{
+      .stage = "online", .name = "ed3r-65", .missions = {}, .failed = 0, .missing = 5};
+  EXPECT_TRUE(tables::MakeStudyTables(std::vector{metrics::ComputeMetrics(none)}, {}).empty());
+  const auto tables =
+      tables::MakeStudyTables(std::vector{metrics::ComputeMetrics(none), Metrics("mine")}, {});
   ASSERT_EQ(tables.size(), 1u);
   EXPECT_EQ(ArmNames(tables[0]), std::vector<std::string>{"mine"});
 }
 
 TEST(StudyTableTest, MarkdownHasARowPerArmAndEqualCells) {
-  const std::string text = MarkdownTable(OneCell(), PaperClaims());
+  const std::string text = tables::MarkdownTable(OneCell(), paper::PaperClaims());
   EXPECT_EQ(text,
             "**A & B.** 95 % intervals in parentheses, the paper's values in brackets.\n\n"
             "| arm | MSR, % | longest mission, min |\n|---|---|---|\n"
@@ -71,16 +76,16 @@ TEST(StudyTableTest, MarkdownHasARowPerArmAndEqualCells) {
 }
 
 TEST(StudyTableTest, MetricsCanGoDown) {
-  StudyTable table = OneCell();
+  tables::StudyTable table = OneCell();
   table.arms_down = false;
-  const std::string text = MarkdownTable(table, PaperClaims());
+  const std::string text = tables::MarkdownTable(table, paper::PaperClaims());
   EXPECT_NE(text.find("| metric | ED³R-75 |\n|---|---|\n| MSR, % | 60.00 (23.07–88.24) [97.18] |"),
             std::string::npos)
       << text;
 }
 
 TEST(StudyTableTest, LatexPutsThePaperUnderOurs) {
-  const std::string text = LatexTable(OneCell(), PaperClaims());
+  const std::string text = tables::LatexTable(OneCell(), paper::PaperClaims());
   EXPECT_NE(text.find("\\caption{A \\& B."), std::string::npos) << text;
   EXPECT_NE(text.find("\\begin{tabular}{lrr}"), std::string::npos) << text;
   EXPECT_NE(text.find("ED\\textsuperscript{3}R-75 & 60.00 {\\scriptsize 23.07--88.24} & 18.00 \\\\\n"
@@ -90,31 +95,31 @@ TEST(StudyTableTest, LatexPutsThePaperUnderOurs) {
 }
 
 TEST(StudyTableTest, LatexHasNoPaperLineWhereThePaperSaysNothing) {
-  StudyTable table = OneCell();
+  tables::StudyTable table = OneCell();
   table.arms = {Metrics("mine")}, table.labels = {"mine"};
-  EXPECT_EQ(LatexTable(table, PaperClaims()).find("textit{paper}"), std::string::npos);
+  EXPECT_EQ(tables::LatexTable(table, paper::PaperClaims()).find("textit{paper}"), std::string::npos);
 }
 
 TEST(StudyTableTest, LatexEscapesWhatItMust) {
-  EXPECT_EQ(LatexText("a_b & 5 % of $x^2 #{~}\\"),
+  EXPECT_EQ(tables::LatexText("a_b & 5 % of $x^2 #{~}\\"),
             "a\\_b \\& 5 \\% of \\$x\\textasciicircum{}2 \\#\\{\\textasciitilde{}\\}\\textbackslash{}");
-  EXPECT_EQ(LatexText("ECD²R η≥1–2"), "ECD\\textsuperscript{2}R $\\eta$$\\geq$1--2");
+  EXPECT_EQ(tables::LatexText("ECD²R η≥1–2"), "ECD\\textsuperscript{2}R $\\eta$$\\geq$1--2");
 }
 
 TEST(StudyTableTest, MarkdownEscapesWhatWouldBreakACell) {
-  EXPECT_EQ(MarkdownText("a|b_c*d`e<f\ng"), "a\\|b\\_c\\*d\\`e&lt;f g");
+  EXPECT_EQ(tables::MarkdownText("a|b_c*d`e<f\ng"), "a\\|b\\_c\\*d\\`e&lt;f g");
 }
 
 TEST(StudyTableTest, CsvAndJsonHaveFullPrecision) {
-  StudyTable table = OneCell();
-  table.metrics = {MetricIndex("total_energy_kj"), MetricIndex("duration_max_min")};
-  const std::string csv = CsvTable(table, PaperClaims());
+  tables::StudyTable table = OneCell();
+  table.metrics = {metrics::MetricIndex("total_energy_kj"), metrics::MetricIndex("duration_max_min")};
+  const std::string csv = tables::CsvTable(table, paper::PaperClaims());
   EXPECT_TRUE(
       csv.starts_with("stage,arm,missions,metric,unit,value,lo,hi,n,paper\n"
                       "online,ed3r-75,5,total_energy_kj,kJ,48,"))
       << csv;
   EXPECT_NE(csv.find("online,ed3r-75,5,duration_max_min,min,18,,,5,18\n"), std::string::npos) << csv;
-  const auto arm = JsonTable(table, PaperClaims()).at("arms").at(0);
+  const auto arm = tables::JsonTable(table, paper::PaperClaims()).at("arms").at(0);
   EXPECT_EQ(arm.at("label"), "ED³R-75");
   EXPECT_EQ(arm.at("total_energy_kj").at("mean"), 48);
   EXPECT_EQ(arm.at("total_energy_kj").at("paper"), 21.44);
@@ -122,11 +127,11 @@ TEST(StudyTableTest, CsvAndJsonHaveFullPrecision) {
 }
 
 TEST(ArmLabelTest, KnowsThePapersArmsAndKeepsOthers) {
-  EXPECT_EQ(ArmLabel("ed3r-75"), "ED³R-75");
-  EXPECT_EQ(ArmLabel("ed3r-p85"), "ED³R-75, P85");
-  EXPECT_EQ(ArmLabel("rbs-p85"), "RBS, P85");
-  EXPECT_EQ(ArmLabel("robot.mass_kg=2.1"), "robot.mass_kg=2.1");
-  EXPECT_EQ(ArmLabel("-p85"), "-p85");
+  EXPECT_EQ(tables::ArmLabel("ed3r-75"), "ED³R-75");
+  EXPECT_EQ(tables::ArmLabel("ed3r-p85"), "ED³R-75, P85");
+  EXPECT_EQ(tables::ArmLabel("rbs-p85"), "RBS, P85");
+  EXPECT_EQ(tables::ArmLabel("robot.mass_kg=2.1"), "robot.mass_kg=2.1");
+  EXPECT_EQ(tables::ArmLabel("-p85"), "-p85");
 }
 
 }  // namespace

@@ -11,8 +11,9 @@
 namespace ed3r {
 namespace {
 
-MissionRecord MissionOf(std::int64_t scenario, double energy_kj, Outcome outcome, std::int64_t network = -1) {
-  MissionRecord mission;
+mission::MissionRecord MissionOf(std::int64_t scenario, double energy_kj, mission::Outcome outcome,
+                                 std::int64_t network = -1) {
+  mission::MissionRecord mission;
   mission.scenario = scenario;
   mission.network = network;
   mission.timesteps = mission.full_local = 1;
@@ -24,51 +25,52 @@ MissionRecord MissionOf(std::int64_t scenario, double energy_kj, Outcome outcome
 
 // Scenario i costs 10 + i kJ in the base and 2 kJ more in the variant, which flies them the other way round and fails
 // where i is odd.
-std::vector<ArmData> Study() {
-  ArmData base{"online", "rbs@base", {}}, heavy{"online", "rbs@heavy", {}};
-  for (int i = 0; i < 10; ++i) base.missions.push_back(MissionOf(i, 10 + i, Outcome::kSuccess));
+std::vector<metrics::ArmData> Study() {
+  metrics::ArmData base{"online", "rbs@base", {}}, heavy{"online", "rbs@heavy", {}};
+  for (int i = 0; i < 10; ++i) base.missions.push_back(MissionOf(i, 10 + i, mission::Outcome::kSuccess));
   for (int i = 9; i >= 0; --i)
     heavy.missions.push_back(
-        MissionOf(i, 12 + i, i % 2 == 0 ? Outcome::kSuccess : Outcome::kBatteryDepleted));
+        MissionOf(i, 12 + i, i % 2 == 0 ? mission::Outcome::kSuccess : mission::Outcome::kBatteryDepleted));
   return {base, heavy};
 }
 
 TEST(VariantsTest, ArmsFindTheirVariants) {
-  EXPECT_EQ(VariantsOf(Study()), (std::vector<std::string>{"base", "heavy"}));
-  const std::vector<ArmData> heavy = ArmsOfVariant(Study(), "heavy");
+  EXPECT_EQ(variants::VariantsOf(Study()), (std::vector<std::string>{"base", "heavy"}));
+  const std::vector<metrics::ArmData> heavy = variants::ArmsOfVariant(Study(), "heavy");
   ASSERT_EQ(heavy.size(), 1u);
   EXPECT_EQ(heavy[0].name, "rbs");
   EXPECT_EQ(heavy[0].missions.front().scenario, 9);
 }
 
 TEST(VariantsTest, DifferencesArePairedByScenario) {
-  const VariantStudy study = CompareVariants(Study(), Verdicts::kJudged);
+  const variants::VariantStudy study = variants::CompareVariants(Study(), variants::Verdicts::kJudged);
   ASSERT_EQ(study.differences.size(), 3u);
-  const VariantDifference& energy = study.differences[0];
+  const variants::VariantDifference& energy = study.differences[0];
   EXPECT_EQ(energy.metric, "total_energy_kj");
   EXPECT_NEAR(energy.base, 14.5, 1e-12);
   EXPECT_NEAR(energy.difference, 2.0, 1e-12);
   EXPECT_NEAR(energy.hi - energy.lo, 0.0, 1e-9)
       << "every pair differs by the same: unpaired it would be several kJ";
   EXPECT_EQ(energy.pairs, 10);
-  const VariantDifference& success = study.differences[1];
+  const variants::VariantDifference& success = study.differences[1];
   EXPECT_NEAR(success.difference, -50.0, 1e-12);
   EXPECT_LT(success.lo, -50.0);
   EXPECT_GT(success.hi, -50.0);
-  EXPECT_NE(VariantText(study).find("rbs"), std::string::npos);
+  EXPECT_NE(variants::VariantText(study).find("rbs"), std::string::npos);
   EXPECT_TRUE(energy.Certain()) << "a rule-based arm asks no network";
-  EXPECT_EQ(DifferenceCsv(study).substr(0, 73),
+  EXPECT_EQ(variants::DifferenceCsv(study).substr(0, 73),
             "arm,variant,metric,base,difference,lo,hi,pairs,base_networks,networks\nrbs");
 }
 
 TEST(VariantsTest, OrdersThatChangeAreARowEach) {
-  std::vector<ArmData> arms;
+  std::vector<metrics::ArmData> arms;
   for (const auto& [variant, energy_kj] : {std::pair("base", 20.0), std::pair("heavy", 60.0)})
-    for (const ArmData& arm :
-         {MakeArm({"ed3r-75", energy_kj}), MakeArm({"ecd2r", 25}), MakeArm({"rbs", 35, 0.2, 0, false})})
-      arms.push_back(AsVariant({arm}, variant).front());
-  const VariantStudy study = CompareVariants(arms, Verdicts::kJudged);
-  const std::string text = VariantText(study);
+    for (const metrics::ArmData& arm :
+         {claims::MakeArm({"ed3r-75", energy_kj}), claims::MakeArm({"ecd2r", 25}),
+          claims::MakeArm({"rbs", 35, 0.2, 0, false})})
+      arms.push_back(variants::AsVariant({arm}, variant).front());
+  const variants::VariantStudy study = variants::CompareVariants(arms, variants::Verdicts::kJudged);
+  const std::string text = variants::VariantText(study);
   EXPECT_NE(text.find("C140 total energy: ed3r-75 < ecd2r, rbs                            +  -\n"),
             std::string::npos)
       << text;
@@ -78,89 +80,98 @@ TEST(VariantsTest, OrdersThatChangeAreARowEach) {
   ASSERT_NE(all, std::string::npos) << text;
   ASSERT_LT(all, none);
   EXPECT_EQ(text.find("C140 ", all), std::string::npos) << "it holds in one of the two";
-  EXPECT_NE(VariantVerdictCsv(study).find("C140,ed3r-75 ecd2r rbs,total_energy_kj,order,\"ed3r-75 < ecd2r, "
-                                          "rbs\",1,2,direction holds,differs\n"),
+  EXPECT_NE(variants::VariantVerdictCsv(study).find(
+                "C140,ed3r-75 ecd2r rbs,total_energy_kj,order,\"ed3r-75 < ecd2r, "
+                "rbs\",1,2,direction holds,differs\n"),
             std::string::npos)
-      << VariantVerdictCsv(study);
+      << variants::VariantVerdictCsv(study);
 }
 
 TEST(VariantsTest, ScenariosThatOneDidNotFlyAreLeftOut) {
-  std::vector<ArmData> arms = Study();
+  std::vector<metrics::ArmData> arms = Study();
   arms[1].missions.resize(4);  // scenarios 9, 8, 7, 6
-  const VariantStudy study = CompareVariants(arms, Verdicts::kJudged);
+  const variants::VariantStudy study = variants::CompareVariants(arms, variants::Verdicts::kJudged);
   EXPECT_EQ(study.differences[0].pairs, 4);
   EXPECT_NEAR(study.differences[0].base, 17.5, 1e-12);
 }
 
 TEST(VariantsTest, NetworksThatDisagreeWidenTheInterval) {
-  ArmData base{"online", "ed3r-75@a", {}}, other{"online", "ed3r-75@b", {}};
+  metrics::ArmData base{"online", "ed3r-75@a", {}}, other{"online", "ed3r-75@b", {}};
   for (int i = 0; i < 100; ++i) {
-    base.missions.push_back(MissionOf(i, 20, Outcome::kSuccess, i % 2));
-    other.missions.push_back(MissionOf(i, i % 2 == 0 ? 21 : 25, Outcome::kSuccess, i % 2));
+    base.missions.push_back(MissionOf(i, 20, mission::Outcome::kSuccess, i % 2));
+    other.missions.push_back(MissionOf(i, i % 2 == 0 ? 21 : 25, mission::Outcome::kSuccess, i % 2));
   }
-  const VariantDifference energy =
-      CompareVariants(std::vector{base, other}, Verdicts::kJudged).differences[0];
+  const variants::VariantDifference energy =
+      variants::CompareVariants(std::vector{base, other}, variants::Verdicts::kJudged).differences[0];
   EXPECT_NEAR(energy.difference, 3.0, 1e-12);
   EXPECT_LT(energy.lo, 0.0) << "two networks that differ by 4 kJ say nothing of the next one";
 }
 
 TEST(VariantsTest, RunsFlownApartAreComparedAsVariants) {
-  std::vector<ArmData> arms = AsVariant({{"online", "rbs", {MissionOf(3, 20, Outcome::kSuccess)}}}, "one");
-  for (ArmData& arm : AsVariant({{"online", "rbs", {MissionOf(3, 26, Outcome::kSuccess)}}}, "two"))
+  std::vector<metrics::ArmData> arms =
+      variants::AsVariant({{"online", "rbs", {MissionOf(3, 20, mission::Outcome::kSuccess)}}}, "one");
+  for (metrics::ArmData& arm :
+       variants::AsVariant({{"online", "rbs", {MissionOf(3, 26, mission::Outcome::kSuccess)}}}, "two"))
     arms.push_back(arm);
-  const VariantStudy study = CompareVariants(arms, Verdicts::kJudged);
+  const variants::VariantStudy study = variants::CompareVariants(arms, variants::Verdicts::kJudged);
   EXPECT_EQ(study.variants, (std::vector<std::string>{"one", "two"}));
   EXPECT_NEAR(study.differences.at(0).difference, 6.0, 1e-12);
 }
 
 TEST(VariantsTest, OnlyHoldingAndDifferingContradict) {
-  const auto contradicts = [](Verdict a, Verdict b) { return VerdictChange{"C1", "b", a, b}.Contradicts(); };
-  EXPECT_TRUE(contradicts(Verdict::kReproduced, Verdict::kDiffers));
-  EXPECT_TRUE(contradicts(Verdict::kDiffers, Verdict::kDirectionHolds));
-  EXPECT_FALSE(contradicts(Verdict::kReproduced, Verdict::kDirectionHolds));
-  EXPECT_FALSE(contradicts(Verdict::kReproduced, Verdict::kNotDecidable));
-  EXPECT_FALSE(contradicts(Verdict::kDiffers, Verdict::kNotMeasured));
+  const auto contradicts = [](claims::Verdict a, claims::Verdict b) {
+    return variants::VerdictChange{"C1", "b", a, b}.Contradicts();
+  };
+  EXPECT_TRUE(contradicts(claims::Verdict::kReproduced, claims::Verdict::kDiffers));
+  EXPECT_TRUE(contradicts(claims::Verdict::kDiffers, claims::Verdict::kDirectionHolds));
+  EXPECT_FALSE(contradicts(claims::Verdict::kReproduced, claims::Verdict::kDirectionHolds));
+  EXPECT_FALSE(contradicts(claims::Verdict::kReproduced, claims::Verdict::kNotDecidable));
+  EXPECT_FALSE(contradicts(claims::Verdict::kDiffers, claims::Verdict::kNotMeasured));
 }
 
 // 100 missions of `networks` networks, whose means lie 4 kJ apart.
-ArmData FlownBy(const std::string& name, int networks, double energy_kj) {
-  ArmData arm{"online", name, {}};
+metrics::ArmData FlownBy(const std::string& name, int networks, double energy_kj) {
+  metrics::ArmData arm{"online", name, {}};
   for (int i = 0; i < 100; ++i)
-    arm.missions.push_back(MissionOf(i, energy_kj + 4.0 * (i % networks), Outcome::kSuccess, i % networks));
+    arm.missions.push_back(
+        MissionOf(i, energy_kj + 4.0 * (i % networks), mission::Outcome::kSuccess, i % networks));
   return arm;
 }
 
 TEST(VariantsTest, ASingleNetworkMakesNothingCertain) {
   for (const auto& [base, other] : {std::pair{1, 1}, std::pair{1, 3}, std::pair{3, 1}}) {
-    const VariantStudy study = CompareVariants(
-        std::vector{FlownBy("ed3r-75@a", base, 20), FlownBy("ed3r-75@b", other, 60)}, Verdicts::kJudged);
-    const VariantDifference& energy = study.differences[0];
+    const variants::VariantStudy study = variants::CompareVariants(
+        std::vector{FlownBy("ed3r-75@a", base, 20), FlownBy("ed3r-75@b", other, 60)},
+        variants::Verdicts::kJudged);
+    const variants::VariantDifference& energy = study.differences[0];
     EXPECT_GT(energy.lo, 0.0);
     EXPECT_FALSE(energy.Certain());
-    const std::string text = VariantText(study);
+    const std::string text = variants::VariantText(study);
     EXPECT_NE(text.find("? one trained network"), std::string::npos) << text;
     EXPECT_EQ(text.find("* ["), std::string::npos) << text;
   }
 }
 
 TEST(VariantsTest, DifferentNumbersOfNetworksAreComparedByWelch) {
-  const ArmData two = FlownBy("ed3r-75@a", 2, 20), five = FlownBy("ed3r-75@b", 5, 20);
-  const auto width = [](const ArmData& a, const ArmData& b) {
-    const VariantDifference energy = CompareVariants(std::vector{a, b}, Verdicts::kJudged).differences[0];
+  const metrics::ArmData two = FlownBy("ed3r-75@a", 2, 20), five = FlownBy("ed3r-75@b", 5, 20);
+  const auto width = [](const metrics::ArmData& a, const metrics::ArmData& b) {
+    const variants::VariantDifference energy =
+        variants::CompareVariants(std::vector{a, b}, variants::Verdicts::kJudged).differences[0];
     return energy.hi - energy.lo;
   };
-  ArmData first = five, second = two;
+  metrics::ArmData first = five, second = two;
   first.name = "ed3r-75@a";
   second.name = "ed3r-75@b";
   EXPECT_NEAR(width(two, five), width(first, second), 1e-9) << "whichever comes first";
   // Means 20, 24 and 20 .. 36: variances of their means 4 and 8, Welch's degrees 144 / (16 / 1 + 64 / 4) = 4.5.
-  EXPECT_NEAR(width(two, five), 2.0 * StudentT95(4.5) * std::sqrt(12.0), 1e-9);
+  EXPECT_NEAR(width(two, five), 2.0 * statistics::StudentT95(4.5) * std::sqrt(12.0), 1e-9);
 }
 
 TEST(VariantsTest, AStudyWithoutVariantsHasNone) {
-  const VariantStudy study = CompareVariants(std::vector{ArmData{"online", "rbs", {}}}, Verdicts::kJudged);
+  const variants::VariantStudy study = variants::CompareVariants(
+      std::vector{metrics::ArmData{"online", "rbs", {}}}, variants::Verdicts::kJudged);
   EXPECT_TRUE(study.variants.empty());
-  EXPECT_EQ(VariantText(study), "");
+  EXPECT_EQ(variants::VariantText(study), "");
 }
 
 }  // namespace

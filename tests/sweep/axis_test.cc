@@ -4,7 +4,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 using Values = std::vector<std::string>;
@@ -55,4 +55,4 @@ TEST(RangeTest, RefusesWhatLeadsNowhere) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::sweep

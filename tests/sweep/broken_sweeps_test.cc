@@ -6,7 +6,7 @@
 
 #include "tests/sweep/scratch.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 struct Broken {
@@ -210,4 +210,4 @@ TEST(BrokenSweepsTest, TheTableIsComplete) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::sweep

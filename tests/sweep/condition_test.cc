@@ -4,7 +4,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 Condition Parsed(const std::string& text) {
@@ -107,4 +107,4 @@ TEST(ConditionTest, DeepNestingIsRead) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::sweep

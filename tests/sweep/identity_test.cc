@@ -9,7 +9,7 @@
 #include "engine/core/shipped.h"
 #include "tests/sweep/scratch.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 namespace fs = std::filesystem;
@@ -181,4 +181,4 @@ TEST(IdentityTest, TellsDifferentStudiesApart) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::sweep

@@ -9,7 +9,7 @@
 #include "engine/sweep/sweep_file.h"
 #include "tests/sweep/scratch.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 constexpr char kStudy[] = R"(# Why?
@@ -74,4 +74,4 @@ TEST(KeptTimestepsTest, MistakesAreTold) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::sweep

@@ -8,7 +8,7 @@
 
 #include "tests/sweep/scratch.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 constexpr const char* kEverything =
@@ -116,4 +116,4 @@ TEST(MutationTest, DamagedFilesAreReadOrRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::sweep

@@ -2,7 +2,7 @@
 
 #include "tests/sweep/scratch.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 constexpr const char* kStudy =
@@ -104,4 +104,4 @@ TEST(OverridesTest, LaterLayersCheckWhatTheyKnow) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::sweep

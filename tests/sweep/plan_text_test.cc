@@ -6,7 +6,7 @@
 #include "engine/core/check.h"
 #include "tests/sweep/scratch.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 // A study with everything that a plan can have.
@@ -76,4 +76,4 @@ TEST(PlanTextTest, ALineThatCannotBeReadIsRefused) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::sweep

@@ -12,7 +12,7 @@
 #include "engine/core/check.h"
 #include "engine/sweep/sweep_file.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 
 class ScratchFolder {
  public:
@@ -68,4 +68,4 @@ inline std::vector<std::string> ArmNames(const Stage& stage) {
   return names;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::sweep

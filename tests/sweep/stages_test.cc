@@ -2,7 +2,7 @@
 
 #include "tests/sweep/scratch.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -112,4 +112,4 @@ TEST(StagesTest, LimitsCountAllStages) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::sweep

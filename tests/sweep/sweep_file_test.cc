@@ -6,7 +6,7 @@
 
 #include "tests/sweep/scratch.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -201,4 +201,4 @@ TEST(SweepFileTest, LargestPlanThatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::sweep

@@ -3,7 +3,7 @@
 #include "engine/core/yaml_reader.h"
 #include "tests/sweep/scratch.h"
 
-namespace ed3r {
+namespace ed3r::sweep {
 namespace {
 
 std::string Unreadable(const std::string& file) {
@@ -79,4 +79,4 @@ TEST(UnreadableFilesTest, LineEndsOfOtherSystems) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::sweep

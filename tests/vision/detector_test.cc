@@ -15,7 +15,7 @@
 #include "engine/perception/vision/resize.h"
 #include "tests/vision/reference_network.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 const std::string kOnnx = ED3R_SOURCE_DIR "/tests/vision/data/red_minus_blue.onnx";
@@ -242,4 +242,4 @@ TEST(Resize, MeansAreExact) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

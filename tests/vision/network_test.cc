@@ -8,7 +8,7 @@
 
 #include "tests/vision/reference_network.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 using test::NoiseFrames;
@@ -37,7 +37,7 @@ Topology Awkward() {
 TEST(FloatNetwork, AgreesWithPlainLoops) {
   for (const Topology& topology : {CompactTopology(), Awkward()}) {
     const DetectorModel model = RandomDetectorModel(topology, 11);
-    const std::vector<std::uint8_t> rgb = NoiseFrames(topology, 3, 5);
+    const std::vector<std::uint8_t> rgb = test::NoiseFrames(topology, 3, 5);
     const std::vector<float> logits = Logits(*MakeFloatNetwork(model, 3), rgb, 3);
     for (std::size_t f = 0; f < 3; ++f) {
       const double expected = test::ReferenceFloatLogit(model, Frame(rgb, 3, f));
@@ -50,7 +50,7 @@ TEST(FloatNetwork, AgreesWithPlainLoops) {
 TEST(IntegerNetwork, EqualsExactIntegerArithmetic) {
   for (const Topology& topology : {CompactTopology(), Awkward()}) {
     const DetectorModel model = RandomDetectorModel(topology, 12);
-    const std::vector<std::uint8_t> rgb = NoiseFrames(topology, 3, 6);
+    const std::vector<std::uint8_t> rgb = test::NoiseFrames(topology, 3, 6);
     const std::vector<float> logits = Logits(*MakeIntegerNetwork(model, 3), rgb, 3);
     for (std::size_t f = 0; f < 3; ++f)
       EXPECT_EQ(logits[f], test::ReferenceIntegerLogit(model, Frame(rgb, 3, f))) << topology.name << f;
@@ -78,7 +78,7 @@ TEST(IntegerNetwork, TheLargestProductsDoNotSaturate) {
 
 TEST(Networks, AFrameDoesNotDependOnItsNeighboursOrTheBatch) {
   const DetectorModel model = RandomDetectorModel(CompactTopology(), 14);
-  const std::vector<std::uint8_t> rgb = NoiseFrames(model.topology, 7, 7);
+  const std::vector<std::uint8_t> rgb = test::NoiseFrames(model.topology, 7, 7);
   for (const auto& make : {MakeFloatNetwork, MakeIntegerNetwork}) {
     const std::unique_ptr<Network> network = make(model, 3);  // 7 = 3 + 3 + 1
     const std::vector<float> all = Logits(*network, rgb, 7);
@@ -93,7 +93,7 @@ TEST(Networks, AFrameDoesNotDependOnItsNeighboursOrTheBatch) {
 
 TEST(Networks, SameBitsOnOneThreadAndManyAndNoThreadIsStarted) {
   const DetectorModel model = RandomDetectorModel(CompactTopology(), 15);
-  const std::vector<std::uint8_t> rgb = NoiseFrames(model.topology, 5, 8);
+  const std::vector<std::uint8_t> rgb = test::NoiseFrames(model.topology, 5, 8);
   omp_set_dynamic(0);
   for (const auto& make : {MakeFloatNetwork, MakeIntegerNetwork}) {
     const std::vector<float> expected = Logits(*make(model, 5), rgb, 5);
@@ -121,7 +121,7 @@ TEST(Networks, SameBitsOnOneThreadAndManyAndNoThreadIsStarted) {
 // The paper's size through the same code: it can be built and run, and both arithmetics see the same network.
 TEST(Networks, TheFullSizeNetworkRunsOnce) {
   const DetectorModel model = RandomDetectorModel(FullSizeTopology(), 16);
-  const std::vector<std::uint8_t> rgb = NoiseFrames(model.topology, 1, 9);
+  const std::vector<std::uint8_t> rgb = test::NoiseFrames(model.topology, 1, 9);
   const float full = Logits(*MakeFloatNetwork(model, 1), rgb, 1)[0];
   EXPECT_TRUE(std::isfinite(full));
   EXPECT_NE(full, 0.0f);
@@ -129,4 +129,4 @@ TEST(Networks, TheFullSizeNetworkRunsOnce) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

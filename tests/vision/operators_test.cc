@@ -11,7 +11,7 @@
 #include "engine/perception/vision/frame_detector.h"
 #include "tests/vision/onnx_writer.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 namespace fs = std::filesystem;
@@ -65,14 +65,14 @@ class Operators : public testing::Test {
   }
 
   // 'flat' [1, 3]: the means of the channels: 19.5, 107 and 10.5 of 256.
-  OnnxWriter& Means() {
+  test::OnnxWriter& Means() {
     return model_.Step("GlobalAveragePool", {"frame"}, {"means"})
         .Step("Flatten", {"means"}, {"flat"}, {{"axis", std::int64_t{1}}});
   }
 
   const double red_ = 19.5 / 256, green_ = 107.0 / 256, blue_ = 10.5 / 256;
   fs::path file_;
-  OnnxWriter model_;
+  test::OnnxWriter model_;
   DetectorConfig config_;
 };
 
@@ -106,7 +106,7 @@ TEST_F(Operators, QuantisedNumbersAreRefused) {
 // OpenCV pads the other side, and passes over the dilations of pools.
 TEST_F(Operators, WindowsThatOpenCvReadsOtherwiseAreRefused) {
   using Numbers = std::vector<std::int64_t>;
-  const OnnxWriter empty = model_;
+  const test::OnnxWriter empty = model_;
   model_.Step(
       "MaxPool", {"frame"}, {"m"},
       {{"kernel_shape", Numbers{3, 3}}, {"strides", Numbers{2, 2}}, {"auto_pad", std::string("SAME_LOWER")}});
@@ -125,9 +125,9 @@ TEST_F(Operators, MatMulAndAdd) {
 }
 
 TEST_F(Operators, ActivationsWithAndWithoutTheirAttributes) {
-  const auto through = [&](const std::string& op, const std::vector<OnnxAttribute>& attributes, double at,
-                           double expected) {
-    model_ = OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 3});
+  const auto through = [&](const std::string& op, const std::vector<test::OnnxAttribute>& attributes,
+                           double at, double expected) {
+    model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 3});
     Means().Weights("shift", {3}, {static_cast<float>(at - red_), 0, 0});
     model_.Step("Add", {"flat", "shift"}, {"x"}).Step(op, {"x"}, {"y"}, attributes);
     EXPECT_NEAR(Value(0), expected, 2e-6) << op << " at " << at;
@@ -171,8 +171,8 @@ TEST_F(Operators, BatchNormalization) {
 // Of red 16 + x: 2 x 2 windows in steps of 2 and one pixel of padding around.
 TEST_F(Operators, AveragesCountTheirPaddingAsTheModelSays) {
   const auto pool = [&](bool counts, const std::string& producer) {
-    model_ = OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 75});
-    std::vector<OnnxAttribute> attributes = {
+    model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 75});
+    std::vector<test::OnnxAttribute> attributes = {
         {"kernel_shape", Ints{2, 2}}, {"strides", Ints{2, 2}}, {"pads", Ints{1, 1, 1, 1}}};
     if (counts) attributes.push_back({"count_include_pad", std::int64_t{1}});
     model_.Producer(producer).Step("AveragePool", {"frame"}, {"p"}, attributes);
@@ -189,9 +189,9 @@ TEST_F(Operators, AveragesCountTheirPaddingAsTheModelSays) {
 }
 
 TEST_F(Operators, WindowsThatDoNotFitAreCutOrCounted) {
-  const auto pool = [&](const std::vector<OnnxAttribute>& more) {
-    model_ = OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {test::kOpen, test::kOpen});
-    std::vector<OnnxAttribute> attributes = {{"kernel_shape", Ints{3, 3}}, {"strides", Ints{3, 3}}};
+  const auto pool = [&](const std::vector<test::OnnxAttribute>& more) {
+    model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {test::kOpen, test::kOpen});
+    std::vector<test::OnnxAttribute> attributes = {{"kernel_shape", Ints{3, 3}}, {"strides", Ints{3, 3}}};
     attributes.insert(attributes.end(), more.begin(), more.end());
     model_.Step("MaxPool", {"frame"}, {"p"}, attributes);
     model_.Step("Flatten", {"p"}, {"y"}, {{"axis", std::int64_t{1}}});
@@ -225,7 +225,7 @@ TEST_F(Operators, SoftmaxOverTheChannelsOfAVector) {
 
 TEST_F(Operators, ReductionsKeepOrDropTheirSides) {
   for (const std::int64_t keep : {0, 1}) {
-    model_ = OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 3});
+    model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 3});
     model_.Step("ReduceMean", {"frame"}, {"m"}, {{"axes", Ints{2, 3}}, {"keepdims", keep}});
     model_.Step("Flatten", {"m"}, {"y"}, {{"axis", std::int64_t{1}}});
     Expect({red_, green_, blue_});
@@ -246,4 +246,4 @@ TEST_F(Operators, DifferencesAndQuotientsKeepTheirOrder) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

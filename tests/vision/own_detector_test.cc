@@ -12,7 +12,7 @@
 #include "engine/perception/vision/frame_detector.h"
 #include "tests/vision/onnx_writer.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,7 +48,7 @@ class OwnDetector : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
   }
 
-  double Answer(const OnnxWriter& model, const FrameStack& frame = kFrame) const {
+  double Answer(const test::OnnxWriter& model, const FrameStack& frame = kFrame) const {
     Write("mine.onnx", model.Bytes());
     double confidence = -1.0;
     LoadDetectors(config_).full->Confidences(frame, std::span(&confidence, 1));
@@ -56,7 +56,7 @@ class OwnDetector : public testing::Test {
   }
 
   // The message of the refusal; what the libraries say beside it would stand on stderr.
-  std::string Refusal(const OnnxWriter& model, const FrameStack& frame = kFrame) const {
+  std::string Refusal(const test::OnnxWriter& model, const FrameStack& frame = kFrame) const {
     testing::internal::CaptureStderr();
     std::string said = "accepted";
     try {
@@ -70,7 +70,7 @@ class OwnDetector : public testing::Test {
     return said;
   }
 
-  void ExpectRefusal(const OnnxWriter& model, const std::vector<std::string>& parts) const {
+  void ExpectRefusal(const test::OnnxWriter& model, const std::vector<std::string>& parts) const {
     const std::string said = Refusal(model);
     EXPECT_TRUE(said.starts_with("perception.detector.")) << said;
     for (const std::string& part : parts)
@@ -82,7 +82,7 @@ class OwnDetector : public testing::Test {
 };
 
 TEST_F(OwnDetector, ADeclaredSizeIsKeptOrTheMismatchRefused) {
-  const OnnxWriter model = RedMinusBlue({1, 3, 64, 48});
+  const test::OnnxWriter model = test::RedMinusBlue({1, 3, 64, 48});
   ExpectRefusal(model, {"takes frames of 48 x 64 pixels", "'frame' is [1, 3, 64, 48]", "are 96 and 54",
                         "set them to 48 and 64"});
   config_.input_width_px = 48;
@@ -91,29 +91,30 @@ TEST_F(OwnDetector, ADeclaredSizeIsKeptOrTheMismatchRefused) {
   EXPECT_NEAR(Answer(model), kExpected, 1e-6);
   config_.input_width_px = config_.input_height_px = 0;
   EXPECT_NEAR(Answer(model), kExpected, 1e-6);
-  ExpectRefusal(RedMinusBlue({1, 3, 4, 4}), {"takes frames of 4 x 4 pixels; allowed: sides of 8 .. 2048"});
+  ExpectRefusal(test::RedMinusBlue({1, 3, 4, 4}),
+                {"takes frames of 4 x 4 pixels; allowed: sides of 8 .. 2048"});
 }
 
 TEST_F(OwnDetector, OtherInputsAreRefused) {
   const std::string allowed = "[1, 3, height, width] or [1, height, width, 3]";
-  ExpectRefusal(RedMinusBlue({1, 1, 54, 96}), {"[1, 1, 54, 96]: not three channels", allowed});
-  ExpectRefusal(RedMinusBlue({1, 54, 96, 1}), {"[1, 54, 96, 1]: not three channels", allowed});
-  ExpectRefusal(RedMinusBlue({8, 3, 54, 96}), {"[8, 3, 54, 96]: 8 frames at a time", allowed});
-  ExpectRefusal(RedMinusBlue({3, 54, 96}), {"has the shape [3, 54, 96]", allowed});
-  OnnxWriter bytes;
+  ExpectRefusal(test::RedMinusBlue({1, 1, 54, 96}), {"[1, 1, 54, 96]: not three channels", allowed});
+  ExpectRefusal(test::RedMinusBlue({1, 54, 96, 1}), {"[1, 54, 96, 1]: not three channels", allowed});
+  ExpectRefusal(test::RedMinusBlue({8, 3, 54, 96}), {"[8, 3, 54, 96]: 8 frames at a time", allowed});
+  ExpectRefusal(test::RedMinusBlue({3, 54, 96}), {"has the shape [3, 54, 96]", allowed});
+  test::OnnxWriter bytes;
   bytes.Input("frame", {1, 3, 54, 96}, test::kUint8).Output("y", {1, 2});
-  AddRedMinusBlue(bytes, "frame");
+  test::AddRedMinusBlue(bytes, "frame");
   ExpectRefusal(bytes, {"'frame' takes uint8", allowed});
-  OnnxWriter two = RedMinusBlue({1, 3, 54, 96});
+  test::OnnxWriter two = test::RedMinusBlue({1, 3, 54, 96});
   two.Input("sizes", {1, 2});
   ExpectRefusal(two, {"has 2 inputs ('frame' [1, 3, 54, 96], 'sizes' [1, 2]); allowed: one"});
 }
 
 TEST_F(OwnDetector, ChannelsMayStandLast) {
-  OnnxWriter model;
-  model.Input("frame", {kOpen, 54, 96, 3}).Output("y", {kOpen, 2});
+  test::OnnxWriter model;
+  model.Input("frame", {test::kOpen, 54, 96, 3}).Output("y", {test::kOpen, 2});
   model.Step("Transpose", {"frame"}, {"planes"}, {{"perm", std::vector<std::int64_t>{0, 3, 1, 2}}});
-  AddRedMinusBlue(model, "planes");
+  test::AddRedMinusBlue(model, "planes");
   EXPECT_NEAR(Answer(model), kExpected, 1e-6);
   config_.channel_order = ChannelOrder::kBgr;
   EXPECT_NEAR(Answer(model), Sigmoid(0.5 - 4 * 0.25), 1e-6);
@@ -123,12 +124,13 @@ TEST_F(OwnDetector, ChannelsMayStandLast) {
 
 // As torch.onnx.export writes x.view(x.size(0), -1) with open sides.
 TEST_F(OwnDetector, OpenSidesBecomeTheFrames) {
-  EXPECT_NEAR(Answer(RedMinusBlue({kOpen, 3, kOpen, kOpen})), kExpected, 1e-6);
-  EXPECT_NEAR(Answer(RedMinusBlue({kOpen, kOpen, kOpen, kOpen})), kExpected, 1e-6);
-  EXPECT_NEAR(Answer(RedMinusBlue({test::kOpenAsNumber, 3, test::kOpenAsNumber, test::kOpenAsNumber})),
+  EXPECT_NEAR(Answer(test::RedMinusBlue({test::kOpen, 3, test::kOpen, test::kOpen})), kExpected, 1e-6);
+  EXPECT_NEAR(Answer(test::RedMinusBlue({test::kOpen, test::kOpen, test::kOpen, test::kOpen})), kExpected,
+              1e-6);
+  EXPECT_NEAR(Answer(test::RedMinusBlue({test::kOpenAsNumber, 3, test::kOpenAsNumber, test::kOpenAsNumber})),
               kExpected, 1e-6);
-  OnnxWriter viewed;
-  viewed.Input("frame", {kOpen, 3, kOpen, kOpen}).Output("y", {kOpen, 2});
+  test::OnnxWriter viewed;
+  viewed.Input("frame", {test::kOpen, 3, test::kOpen, test::kOpen}).Output("y", {test::kOpen, 2});
   viewed.Weights("w", {3, 2}, {4, 0, 0, 0, -4, 0}).Weights("b", {2}, {0.5F, -0.25F});
   viewed.Integers("zero", {0}).Integers("rest", {-1});
   viewed.Step("GlobalAveragePool", {"frame"}, {"means"})
@@ -143,12 +145,12 @@ TEST_F(OwnDetector, OpenSidesBecomeTheFrames) {
 }
 
 // A map of two values a pixel, a score and a table of boxes.
-OnnxWriter SeveralOutputs(const std::vector<std::string>& order) {
-  OnnxWriter model;
+test::OnnxWriter SeveralOutputs(const std::vector<std::string>& order) {
+  test::OnnxWriter model;
   model.Input("frame", {1, 3, 54, 96});
   for (const std::string& output : order) {
     if (output == "map") model.Output("map", {1, 2, 54, 96});
-    if (output == "open map") model.Output("map", {kOpen, kOpen, kOpen, kOpen});
+    if (output == "open map") model.Output("map", {test::kOpen, test::kOpen, test::kOpen, test::kOpen});
     if (output == "boxes") model.Output("boxes", {1, 1728, 9});
     if (output == "label") model.Output("label", {1}, test::kInt64);
     if (output == "y") model.Output("y", {1, 2});
@@ -157,7 +159,7 @@ OnnxWriter SeveralOutputs(const std::vector<std::string>& order) {
       .Step("Conv", {"frame", "k"}, {"map"}, {{"kernel_shape", std::vector<std::int64_t>{1, 1}}});
   model.Integers("s", {1, 1728, 9}).Step("Reshape", {"frame", "s"}, {"boxes"});
   model.Step("Nonsense", {"map"}, {"label"});  // of no concern to whoever does not ask for it
-  AddRedMinusBlue(model, "frame");
+  test::AddRedMinusBlue(model, "frame");
   return model;
 }
 
@@ -178,9 +180,9 @@ TEST_F(OwnDetector, TheFirstDeclaredOutputIsReadOrTheNamedOne) {
 
 TEST_F(OwnDetector, OneOfTheOutputsOfAStepIsThatOne) {
   for (const bool second : {false, true}) {
-    OnnxWriter model;
+    test::OnnxWriter model;
     model.Input("frame", {1, 3, 54, 96}).Output("left", {1, 1}).Output("right", {1, 1});
-    AddRedMinusBlue(model, "frame");
+    test::AddRedMinusBlue(model, "frame");
     model.Step("Split", {"y"}, {"left", "right"},
                {{"axis", std::int64_t{1}}, {"split", std::vector<std::int64_t>{1, 1}}});
     config_.output_name = second ? "right" : "left";
@@ -189,9 +191,9 @@ TEST_F(OwnDetector, OneOfTheOutputsOfAStepIsThatOne) {
 }
 
 TEST_F(OwnDetector, AProbabilityIsNotTakenForALogit) {
-  OnnxWriter model;
+  test::OnnxWriter model;
   model.Input("frame", {1, 3, 54, 96}).Output("p", {1, 2});
-  AddRedMinusBlue(model, "frame");
+  test::AddRedMinusBlue(model, "frame");
   model.Step("Sigmoid", {"y"}, {"p"});
   ExpectRefusal(model, {"'p' comes from Sigmoid", "perception.detector.output = sigmoid", "probability"});
   config_.output = DetectorOutput::kProbability;
@@ -199,7 +201,7 @@ TEST_F(OwnDetector, AProbabilityIsNotTakenForALogit) {
 }
 
 TEST_F(OwnDetector, EachChannelHasItsMeanAndDeviation) {
-  const OnnxWriter model = RedMinusBlue({1, 3, 54, 96});
+  const test::OnnxWriter model = test::RedMinusBlue({1, 3, 54, 96});
   config_.mean_red = 128, config_.sd_red = 0.5;
   config_.mean_blue = 64, config_.sd_blue = 0.25;
   const double red = (200.0 - 128.0) / 256.0 / 0.5, blue = (136.0 - 64.0) / 256.0 / 0.25;
@@ -209,7 +211,7 @@ TEST_F(OwnDetector, EachChannelHasItsMeanAndDeviation) {
 }
 
 TEST_F(OwnDetector, MeansAndDeviationsOfOtherUnitsAreRefused) {
-  const OnnxWriter model = RedMinusBlue({1, 3, 54, 96});
+  const test::OnnxWriter model = test::RedMinusBlue({1, 3, 54, 96});
   config_.mean_green = 0.456;
   EXPECT_EQ(
       Refusal(model),
@@ -226,7 +228,7 @@ TEST_F(OwnDetector, MeansAndDeviationsOfOtherUnitsAreRefused) {
 
 TEST_F(OwnDetector, HalfPrecisionWeightsAreRead) {
   for (const bool raw : {true, false}) {
-    OnnxWriter model;
+    test::OnnxWriter model;
     model.Input("frame", {1, 3, 54, 96}, test::kFloat16).Output("y", {1, 2}, test::kFloat16);
     model.Halves("w", {3, 2}, {4, 0, 0, 0, -4, 0}, raw).Halves("b", {2}, {0.5F, -0.25F}, raw);
     model.Step("GlobalAveragePool", {"frame"}, {"means"})
@@ -234,7 +236,7 @@ TEST_F(OwnDetector, HalfPrecisionWeightsAreRead) {
         .Step("Gemm", {"flat", "w", "b"}, {"y"});
     EXPECT_NEAR(Answer(model), kExpected, 1e-6) << raw;
   }
-  OnnxWriter cast;  // as converters write a model whose input and output stay single
+  test::OnnxWriter cast;  // as converters write a model whose input and output stay single
   cast.Input("frame", {1, 3, 54, 96}).Output("y", {1, 2});
   cast.Halves("w", {3, 2}, {4, 0, 0, 0, -4, 0}).Halves("b", {2}, {0.5F, -0.25F});
   cast.Step("Cast", {"frame"}, {"half"}, {{"to", std::int64_t{test::kFloat16}}})
@@ -246,8 +248,9 @@ TEST_F(OwnDetector, HalfPrecisionWeightsAreRead) {
   EXPECT_EQ(test::HalfBits(-0.25F), 0xb400);
 }
 
-OnnxWriter WithWeightsOutside(const std::string& file, const std::string& offset, const std::string& length) {
-  OnnxWriter model;
+test::OnnxWriter WithWeightsOutside(const std::string& file, const std::string& offset,
+                                    const std::string& length) {
+  test::OnnxWriter model;
   model.Input("frame", {1, 3, 54, 96}).Output("y", {1, 2});
   model.Outside("w", {3, 2}, file, offset, length).Weights("b", {2}, {0.5F, -0.25F});
   model.Step("GlobalAveragePool", {"frame"}, {"means"})
@@ -282,21 +285,21 @@ TEST_F(OwnDetector, WeightsInAFileBesideAreRead) {
 
 TEST_F(OwnDetector, OperatorsThatCannotBeRunAreNamed) {
   const auto ends_with = [](const std::string& op, const std::string& domain = "") {
-    OnnxWriter model;
+    test::OnnxWriter model;
     model.Input("frame", {1, 3, 54, 96}).Output("z", {1, 2});
-    AddRedMinusBlue(model, "frame");
+    test::AddRedMinusBlue(model, "frame");
     return model.Step(op, {"y"}, {"z"}, {}, domain);
   };
   ExpectRefusal(ends_with("NonMaxSuppression"), {"operator NonMaxSuppression", "the NonMaxSuppression"});
   ExpectRefusal(ends_with("Mystery", "com.mine"), {"operator com.mine.Mystery"});
   ExpectRefusal(ends_with("STFT"), {"operator STFT"});
-  OnnxWriter shape;
+  test::OnnxWriter shape;
   shape.Input("frame", {1, 3, 54, 96}).Output("z", {1, 2}).Weights("w", {5, 2}, std::vector<float>(10));
   shape.Step("GlobalAveragePool", {"frame"}, {"means"})
       .Step("Flatten", {"means"}, {"flat"}, {{"axis", std::int64_t{1}}})
       .Step("MatMul", {"flat", "w"}, {"z"});
   ExpectRefusal(shape, {"is no model that OpenCV can run: "});
-  OnnxWriter apart = RedMinusBlue({1, 3, 54, 96});
+  test::OnnxWriter apart = test::RedMinusBlue({1, 3, 54, 96});
   apart.Output("b", {2});
   config_.output_name = "b";
   ExpectRefusal(apart, {"its output 'b' does not depend on its input 'frame'"});
@@ -304,7 +307,7 @@ TEST_F(OwnDetector, OperatorsThatCannotBeRunAreNamed) {
 
 // Fine on blank frames, so that it is met first in flight.
 TEST_F(OwnDetector, AnswersThatAreNoConfidenceAreErrorsThatNameTheModel) {
-  const auto said_of = [&](const OnnxWriter& model, const FrameStack& frame) {
+  const auto said_of = [&](const test::OnnxWriter& model, const FrameStack& frame) {
     Write("mine.onnx", model.Bytes());
     const DetectorPair pair = LoadDetectors(config_);
     double confidence = -1.0;
@@ -316,14 +319,14 @@ TEST_F(OwnDetector, AnswersThatAreNoConfidenceAreErrorsThatNameTheModel) {
     return "answers " + std::to_string(confidence);
   };
   config_.output = DetectorOutput::kProbability;
-  OnnxWriter root;
+  test::OnnxWriter root;
   root.Input("frame", {1, 3, 54, 96}).Output("root", {1, 2});
-  AddRedMinusBlue(root, "frame");
+  test::AddRedMinusBlue(root, "frame");
   root.Step("Sqrt", {"y"}, {"root"});
   const std::string name = "perception.detector.full: " + config_.full;
   EXPECT_EQ(said_of(root, Frame(0, 0, 255)), name + ": answers not a number, which is no probability");
   EXPECT_EQ(said_of(root, Frame(90, 0, 90)), "answers 0.707107");
-  const OnnxWriter line = RedMinusBlue({1, 3, 54, 96});
+  const test::OnnxWriter line = test::RedMinusBlue({1, 3, 54, 96});
   EXPECT_TRUE(
       said_of(line, Frame(255, 0, 0)).starts_with(name + ": answers 4.484375, which is no probability"));
   EXPECT_TRUE(
@@ -333,4 +336,4 @@ TEST_F(OwnDetector, AnswersThatAreNoConfidenceAreErrorsThatNameTheModel) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

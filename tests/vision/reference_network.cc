@@ -10,7 +10,7 @@ namespace {
 
 // Calls term(weight index, input index or -1 for padding) for every weight of one output.
 template <class Term>
-void ForEachWeight(const LayerShape& s, int out, int y, int x, Term&& term) {
+void ForEachWeight(const perception::LayerShape& s, int out, int y, int x, Term&& term) {
   for (int in = 0; in < s.in_channels; ++in)
     for (int ky = 0; ky < s.kernel_height; ++ky)
       for (int kx = 0; kx < s.kernel_width; ++kx) {
@@ -23,7 +23,7 @@ void ForEachWeight(const LayerShape& s, int out, int y, int x, Term&& term) {
 
 // Value(layer, output, row, column) for all outputs, planes first.
 template <class Value, class Result>
-void ForEachOutput(const LayerShape& s, std::vector<Result>& results, Value&& value) {
+void ForEachOutput(const perception::LayerShape& s, std::vector<Result>& results, Value&& value) {
   for (int out = 0; out < s.out_channels; ++out)
     for (int y = 0; y < s.out_height; ++y)
       for (int x = 0; x < s.out_width; ++x) results.push_back(value(out, y, x));
@@ -38,8 +38,8 @@ std::vector<Number> Planes(std::span<const std::uint8_t> rgb, Convert&& convert)
 
 }  // namespace
 
-double ReferenceFloatLogit(const DetectorModel& model, std::span<const std::uint8_t> rgb) {
-  const std::vector<LayerShape> shapes = Layers(model.topology);
+double ReferenceFloatLogit(const perception::DetectorModel& model, std::span<const std::uint8_t> rgb) {
+  const std::vector<perception::LayerShape> shapes = perception::Layers(model.topology);
   std::vector<double> inputs = Planes<double>(
       rgb, [&](int byte) { return (byte - model.pixel_offset) * static_cast<double>(model.pixel_scale); });
   for (std::size_t l = 0; l < shapes.size(); ++l) {
@@ -58,12 +58,12 @@ double ReferenceFloatLogit(const DetectorModel& model, std::span<const std::uint
   return inputs.front();
 }
 
-float ReferenceIntegerLogit(const DetectorModel& model, std::span<const std::uint8_t> rgb) {
-  const std::vector<LayerShape> shapes = Layers(model.topology);
+float ReferenceIntegerLogit(const perception::DetectorModel& model, std::span<const std::uint8_t> rgb) {
+  const std::vector<perception::LayerShape> shapes = perception::Layers(model.topology);
   std::vector<std::int64_t> inputs = Planes<std::int64_t>(rgb, [](int byte) { return byte; });
   for (std::size_t l = 0;; ++l) {
-    const LayerQuantization& q = model.quantization[l];
-    const std::vector<std::int8_t> weights = QuantizedWeights(model.layers[l], q);
+    const perception::LayerQuantization& q = model.quantization[l];
+    const std::vector<std::int8_t> weights = perception::QuantizedWeights(model.layers[l], q);
     const float scale = q.input_scale * q.weight_scale;
     std::vector<float> outputs;
     ForEachOutput(shapes[l], outputs, [&](int out, int y, int x) {
@@ -77,7 +77,7 @@ float ReferenceIntegerLogit(const DetectorModel& model, std::span<const std::uin
       return l + 1 < shapes.size() && value < 0.0f ? value * model.topology.leaky_slope : value;
     });
     if (l + 1 == shapes.size()) return outputs.front();
-    const LayerQuantization& next = model.quantization[l + 1];
+    const perception::LayerQuantization& next = model.quantization[l + 1];
     const float inverse = 1.0f / next.input_scale;
     inputs.clear();
     for (const float value : outputs) {
@@ -87,7 +87,7 @@ float ReferenceIntegerLogit(const DetectorModel& model, std::span<const std::uin
   }
 }
 
-std::vector<std::uint8_t> NoiseFrames(const Topology& topology, int frames, std::uint64_t seed) {
+std::vector<std::uint8_t> NoiseFrames(const perception::Topology& topology, int frames, std::uint64_t seed) {
   const int block = std::max(1, topology.width_px / 12);
   std::vector<std::uint8_t> rgb;
   for (int f = 0; f < frames; ++f)

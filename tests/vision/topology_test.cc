@@ -4,7 +4,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 // Table of CV models: 11 convolutional + 2 fully connected, 36.5 M parameters, 20.23 GFLOP.
@@ -52,4 +52,4 @@ TEST(Topology, RefusesDesignsThatMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -11,7 +11,7 @@
 #include "engine/world/scene.h"
 #include "tests/world/world_files.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 constexpr const char* kWorld = R"(name: small
@@ -306,4 +306,4 @@ TEST_F(BrokenFiles, StemMaps) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

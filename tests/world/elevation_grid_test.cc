@@ -9,7 +9,7 @@
 #include "engine/world/scene.h"
 #include "tests/world/world_files.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 double Bumps(int column, int row) {
@@ -104,4 +104,4 @@ TEST_F(ElevationGrid, HolesOutsideTheCropDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -10,10 +10,11 @@
 
 #include "tests/world/scene_builder.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 constexpr double kGravity = 9.8;
+constexpr double kStepS = 1.0 / 240.0;
 
 const RigidBodySpec kRobot = {.mass_kg = 1.8, .size_m = {0.4, 0.6, 0.2}, .inertia_kgm2 = {0.06, 0.03, 0.08}};
 
@@ -30,12 +31,12 @@ RigidBodyState At(double x, double y, double z) {
 
 TEST(FlightWorldTest, FallsFreelyAndHoversUnderItsWeight) {
   const Scene scene = FlatScene();
-  FlightWorld world(scene.Geometry(), kRobot, kGravity);
+  FlightWorld world(scene.Geometry(), kRobot, kGravity, kStepS);
   world.SetState(At(100, 100, 90));
   const int n = 240;
   for (int i = 0; i < n; ++i) world.Step(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
   // Semi-implicit Euler: v_n = -g n h, z_n = z_0 - g h^2 n (n + 1) / 2.
-  const double h = FlightWorld::kUsualStepS;
+  const double h = kStepS;
   EXPECT_NEAR(world.State().velocity_mps.z(), -kGravity * n * h, 1e-4);
   EXPECT_NEAR(world.State().position_m.z(), 90 - kGravity * h * h * n * (n + 1) / 2, 2e-3);
 
@@ -47,7 +48,7 @@ TEST(FlightWorldTest, FallsFreelyAndHoversUnderItsWeight) {
 
 TEST(FlightWorldTest, TorqueActsInBodyAxes) {
   const Scene scene = FlatScene();
-  FlightWorld world(scene.Geometry(), kRobot, kGravity);
+  FlightWorld world(scene.Geometry(), kRobot, kGravity, kStepS);
   RigidBodyState state = At(100, 100, 90);
   state.attitude = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized());
   world.SetState(state);
@@ -59,7 +60,7 @@ TEST(FlightWorldTest, TorqueActsInBodyAxes) {
 
 TEST(FlightWorldTest, LandsOnTheGroundAndCountsTheContact) {
   const Scene scene = FlatScene();
-  FlightWorld world(scene.Geometry(), kRobot, kGravity);
+  FlightWorld world(scene.Geometry(), kRobot, kGravity, kStepS);
   world.SetState(At(100, 100, 5.0 + 0.1 + 0.3));
   int steps_in_air = 0;
   for (int i = 0; i < 480; ++i) {
@@ -81,7 +82,7 @@ TEST(FlightWorldTest, TouchesTheTrunkThatItPushesInto) {
                                   .trunk_radius_m = 0.3,
                                   .crown_radius_m = 2,
                                   .crown_depth_m = 8}});
-  FlightWorld world(scene.Geometry(), kRobot, kGravity);
+  FlightWorld world(scene.Geometry(), kRobot, kGravity, kStepS);
   world.SetState(At(100, 100, 8));
   for (int i = 0; i < 960; ++i) world.Step({2.0, 0.0, kRobot.mass_kg * kGravity}, Eigen::Vector3d::Zero());
   EXPECT_GT(world.ContactSteps(), 0);
@@ -104,7 +105,7 @@ TEST(FlightWorldTest, NearSurfacesAndInClearAirMotionHasTheSameBits) {
                        .crown_depth_m = 1});
   const Scene crowded = FlatScene(std::move(poles));
   const auto fly = [](const Scene& scene) {
-    FlightWorld world(scene.Geometry(), kRobot, kGravity);
+    FlightWorld world(scene.Geometry(), kRobot, kGravity, kStepS);
     RigidBodyState state = At(95, 100, 40);
     state.velocity_mps = {4.0, 0.0, 1.0};
     state.rate_radps = {1.5, -2.0, 0.5};
@@ -144,7 +145,7 @@ TEST(FlightWorldTest, ClearAirHidesNoContact) {
   };
   for (const double speed_mps : {1.0, 5.0, 15.0}) {
     for (int start = 0; start < 10; ++start) {
-      FlightWorld world(scene.Geometry(), large, kGravity);
+      FlightWorld world(scene.Geometry(), large, kGravity, kStepS);
       RigidBodyState state = At(100, 100, 20.0 + 0.1 * start);
       state.attitude = tilted;
       state.velocity_mps = {0.3 * speed_mps, 0.0, -speed_mps};
@@ -155,8 +156,8 @@ TEST(FlightWorldTest, ClearAirHidesNoContact) {
       // Bullet thickens ground and robot by 4.5 cm. It looks where the last step ended, up to a step's way too deep,
       // and has moved the robot by another step before it can be asked.
       const double gap_m = lowest_corner_m(world.State()) - 5.0;
-      EXPECT_GT(gap_m, -2.0 * speed_mps * FlightWorld::kUsualStepS) << speed_mps << " " << start;
-      EXPECT_LT(gap_m, 0.08 + speed_mps * FlightWorld::kUsualStepS) << speed_mps << " " << start;
+      EXPECT_GT(gap_m, -2.0 * speed_mps * kStepS) << speed_mps << " " << start;
+      EXPECT_LT(gap_m, 0.08 + speed_mps * kStepS) << speed_mps << " " << start;
     }
   }
 }
@@ -165,7 +166,7 @@ TEST(FlightWorldTest, ClearAirHidesNoContact) {
 // landing is found.
 TEST(FlightWorldTest, EveryLandingAfterClearAirIsAContact) {
   const Scene scene = FlatScene();
-  FlightWorld world(scene.Geometry(), kRobot, kGravity);
+  FlightWorld world(scene.Geometry(), kRobot, kGravity, kStepS);
   world.SetState(At(100, 100, 12));
   constexpr int kCycle = 960;  // falls and lies for three seconds, is lifted for one
   for (int cycle = 0; cycle < 4; ++cycle) {
@@ -186,7 +187,7 @@ TEST(FlightWorldTest, EveryLandingAfterClearAirIsAContact) {
 TEST(FlightWorldTest, WorldsInOtherThreadsChangeNothing) {
   const Scene scene = FlatScene();
   const auto bounce = [&](double x_m) {
-    FlightWorld world(scene.Geometry(), kRobot, kGravity);
+    FlightWorld world(scene.Geometry(), kRobot, kGravity, kStepS);
     RigidBodyState state = At(x_m, 50, 6);
     state.velocity_mps = {3.0, 1.0, -2.0};
     state.rate_radps = {1.0, -2.0, 0.5};
@@ -208,4 +209,4 @@ TEST(FlightWorldTest, WorldsInOtherThreadsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -17,7 +17,7 @@
 #include "engine/world/bake.h"
 #include "tests/world/scene_builder.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 using Eigen::Vector3d;
@@ -216,4 +216,4 @@ TEST_F(OneTree, FacesOutwards) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -13,7 +13,7 @@
 #include "engine/world/scene.h"
 #include "tests/world/world_files.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 using Eigen::Vector3d;
@@ -200,4 +200,4 @@ TEST(StemMapWorld, TilesTheStandAndMirrorsEveryOtherTile) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -8,7 +8,7 @@
 #include "tests/world/scene_builder.h"
 #include "tests/world/world_files.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 Scene::Parts Slope() {
@@ -90,4 +90,4 @@ TEST(MapPicture, RefusesPathsThatCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -9,7 +9,7 @@
 #include "engine/world/sight.h"
 #include "tests/world/scene_builder.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 using Eigen::Vector3d;
@@ -125,4 +125,4 @@ TEST(Sight, AFelledTreeHidesNothing) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -12,7 +12,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 namespace fs = std::filesystem;
@@ -179,4 +179,4 @@ TEST_F(PictureFile, SidesAreRefusedByTheHeaderAlone) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

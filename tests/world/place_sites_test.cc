@@ -14,7 +14,7 @@
 #include "engine/world/scene.h"
 #include "tests/world/world_files.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 class PlacedSites : public ::testing::Test {
@@ -134,4 +134,4 @@ TEST_F(PlacedSites, RefuseBadKeys) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

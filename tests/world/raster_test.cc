@@ -12,7 +12,7 @@
 #include "tests/world/test_rasters.h"
 #include "tests/world/world_files.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 constexpr double kFootM = 0.3048, kSurveyFootM = 1200.0 / 3937.0;
@@ -415,4 +415,4 @@ TEST_F(TextGridTest, FilesThatCountAreNamed) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -7,7 +7,7 @@
 
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::world {
 
 inline Scene::Parts PartsOf(int nodes, double cell_m, const std::function<double(double, double)>& height_m,
                             std::vector<Tree> trees = {}) {
@@ -23,4 +23,4 @@ inline Scene::Parts PartsOf(int nodes, double cell_m, const std::function<double
   return parts;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -7,7 +7,7 @@
 #include "engine/core/check.h"
 #include "tests/world/scene_builder.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 double Slope(double x_m, double y_m) { return 0.2 * x_m + 0.1 * y_m; }
@@ -67,4 +67,4 @@ TEST(Scene, RefusesATerrainThatIsNoGrid) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

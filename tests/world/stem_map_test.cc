@@ -11,7 +11,7 @@
 #include "engine/core/check.h"
 #include "tests/world/world_files.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 const std::string kHeader = "x_m,y_m,dbh_cm,height_m,crown_depth_m,crown_radius_m\n";
@@ -249,4 +249,4 @@ TEST(TreeAllometryTest, CrownsStayWithinTheirTrees) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

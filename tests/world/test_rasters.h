@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::world {
 
 struct TestRaster {
   int columns = 11, rows = 9;
@@ -72,4 +72,4 @@ inline void WriteRaster(const std::string& path, const TestRaster& raster) {
   CPLSetThreadLocalConfigOption("GDAL_TIFF_INTERNAL_MASK", nullptr);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -12,7 +12,7 @@
 #include "engine/world/scene.h"
 #include "tests/world/world_files.h"
 
-namespace ed3r {
+namespace ed3r::world {
 namespace {
 
 class WorldFile : public ::testing::Test {
@@ -141,4 +141,4 @@ TEST_F(WorldFile, RefusesTwoPlacesOrNone) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::world

@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-namespace ed3r {
+namespace ed3r::world {
 
 class TestFolder {
  public:
@@ -54,4 +54,4 @@ inline std::string GridWorld(const std::string& grid_keys) {
          "start: {at_m: [50, 40], radius_m: 5, height_m: [20, 40]}\n";
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::world

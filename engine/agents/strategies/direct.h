@@ -11,7 +11,7 @@
 #include "engine/agents/motion_policy.h"
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 class DirectMotion : public MotionPolicy {
  public:
@@ -23,10 +23,11 @@ class DirectMotion : public MotionPolicy {
   MotionChoice Choose(const MotionQuestion& question) override {
     std::array<double, std::tuple_size_v<RcAction>> values{};
     context_.networks.direct_rc->Decide(StateOf(question.view), values, workspace_);
-    const MotionCommand given{.displacement_m = {values[kRcMoveX - kRcStates], values[kRcMoveY - kRcStates],
-                                                 values[kRcMoveZ - kRcStates]},
-                              .turn_rad = values[kRcTurn - kRcStates],
-                              .tilt_rad = values[kRcTiltCommand - kRcStates]};
+    const robot::MotionCommand given{
+        .displacement_m = {values[rfnn::kRcMoveX - rfnn::kRcStates], values[rfnn::kRcMoveY - rfnn::kRcStates],
+                           values[rfnn::kRcMoveZ - rfnn::kRcStates]},
+        .turn_rad = values[rfnn::kRcTurn - rfnn::kRcStates],
+        .tilt_rad = values[rfnn::kRcTiltCommand - rfnn::kRcStates]};
     return {.command = Clamped(given, question.ranges, context_.config.agents, question.view.pose.tilt_rad),
             .rule = MotionRule::kCommanded,
             .epsilon = 0.0};
@@ -34,7 +35,7 @@ class DirectMotion : public MotionPolicy {
 
  private:
   const AgentContext context_;
-  Model::Workspace workspace_;
+  rfnn::Model::Workspace workspace_;
 };
 
 class DirectExecution : public ExecutionPolicy {
@@ -61,7 +62,7 @@ class DirectExecution : public ExecutionPolicy {
 
  private:
   const AgentContext context_;
-  Model::Workspace workspace_;
+  rfnn::Model::Workspace workspace_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

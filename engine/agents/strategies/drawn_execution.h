@@ -7,7 +7,7 @@
 #include "engine/core/check.h"
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 inline Execution DrawAllowed(AllowedExecutions allowed, RandomExecution random, Stream& stream) {
   if (random == RandomExecution::kCoin && allowed.offload && allowed.Count() > 1) {
@@ -47,4 +47,4 @@ class OnlyExecution : public ExecutionPolicy {
   }
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -7,7 +7,7 @@
 #include "engine/core/check.h"
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 GreedyExecution::GreedyExecution(const AgentContext& context) : context_(context) {
   ED3R_CHECK(context.networks.robot != nullptr, "the strategy asks the robot's network, and there is none");
@@ -43,4 +43,4 @@ std::array<double, 3> GreedyExecution::PredictAll(const RobotView& view) {
   return rewards;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -7,7 +7,7 @@
 #include "engine/agents/context.h"
 #include "engine/agents/execution_policy.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 class GreedyExecution : public ExecutionPolicy {
  public:
@@ -19,7 +19,7 @@ class GreedyExecution : public ExecutionPolicy {
 
  private:
   const AgentContext context_;
-  Model::Workspace workspace_;
+  rfnn::Model::Workspace workspace_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -6,11 +6,11 @@
 #include "engine/core/check.h"
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 namespace {
 
 // Candidate actions as rows for the network.
-void FillRows(const std::vector<MotionCommand>& commands, const std::vector<int>& indices,
+void FillRows(const std::vector<robot::MotionCommand>& commands, const std::vector<int>& indices,
               std::vector<float>& rows) {
   rows.clear();
   for (const int index : indices) {
@@ -20,11 +20,11 @@ void FillRows(const std::vector<MotionCommand>& commands, const std::vector<int>
 }
 
 // Where each candidate would end.
-std::vector<Eigen::Vector3d> Ends(const RcView& view, const std::vector<MotionCommand>& commands,
+std::vector<Eigen::Vector3d> Ends(const RcView& view, const std::vector<robot::MotionCommand>& commands,
                                   const Eigen::Vector3d& size_m) {
   std::vector<Eigen::Vector3d> ends_m;
   ends_m.reserve(commands.size());
-  for (const MotionCommand& command : commands)
+  for (const robot::MotionCommand& command : commands)
     ends_m.push_back(
         (view.pose.position_m + command.displacement_m).cwiseMax(Eigen::Vector3d::Zero()).cwiseMin(size_m));
   return ends_m;
@@ -58,7 +58,7 @@ MotionChoice GreedyMotion::TakeBest(const MotionQuestion& question) {
   const RcView& view = question.view;
   Stream stream(context_.seed, context_.scenario, Purpose::kCandidates, question.timestep);
   commands_.resize(static_cast<std::size_t>(agents.candidates));
-  for (MotionCommand& command : commands_)
+  for (robot::MotionCommand& command : commands_)
     command = DrawCommand(question.ranges, agents, view.pose.tilt_rad, stream);
 
   RegionMemory::Selection selection;
@@ -72,7 +72,7 @@ MotionChoice GreedyMotion::TakeBest(const MotionQuestion& question) {
 
   FillRows(commands_, indices, rows_);
   rewards_.resize(indices.size());
-  const BestAction best = context_.networks.rc->Best(StateOf(view), rows_, rewards_, workspace_);
+  const rfnn::BestAction best = context_.networks.rc->Best(StateOf(view), rows_, rewards_, workspace_);
   const int chosen = indices[static_cast<std::size_t>(best.index)];
   if (question.trace != nullptr)
     *question.trace = {commands_, rewards_, std::move(selection.candidates), chosen};
@@ -82,8 +82,8 @@ MotionChoice GreedyMotion::TakeBest(const MotionQuestion& question) {
           .predicted_reward = best.reward};
 }
 
-double GreedyMotion::Predict(const RcView& view, const MotionCommand& command) {
+double GreedyMotion::Predict(const RcView& view, const robot::MotionCommand& command) {
   return context_.networks.rc->Predict(StateOf(view), ActionOf(command), workspace_);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

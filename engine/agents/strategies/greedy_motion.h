@@ -8,7 +8,7 @@
 #include "engine/agents/motion_policy.h"
 #include "engine/agents/region_memory.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 class GreedyMotion : public MotionPolicy {
  public:
@@ -17,7 +17,7 @@ class GreedyMotion : public MotionPolicy {
 
   void Observe(const RcView& view) override { regions_.Visit(view.pose.position_m, view.previous_scs); }
   MotionChoice Choose(const MotionQuestion& question) override;
-  double Predict(const RcView& view, const MotionCommand& command) override;
+  double Predict(const RcView& view, const robot::MotionCommand& command) override;
 
  private:
   MotionChoice Explore(const MotionQuestion& question);
@@ -25,11 +25,11 @@ class GreedyMotion : public MotionPolicy {
 
   const AgentContext context_;
   RegionMemory regions_;
-  Model::Workspace workspace_;
+  rfnn::Model::Workspace workspace_;
   // Of one decision; kept so that the next needs no memory of its own.
-  std::vector<MotionCommand> commands_;
+  std::vector<robot::MotionCommand> commands_;
   std::vector<float> rows_;
   std::vector<double> rewards_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

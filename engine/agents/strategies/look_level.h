@@ -11,7 +11,7 @@
 #include "engine/agents/context.h"
 #include "engine/agents/motion_policy.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 class LookLevel : public MotionPolicy {
  public:
@@ -45,4 +45,4 @@ class LookLevel : public MotionPolicy {
   double turned_rad_ = 0.0;  // since something was seen or the robot went on
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -6,7 +6,7 @@
 #include "engine/agents/motion_policy.h"
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 class OutsideMotion : public MotionPolicy {
  public:
@@ -24,4 +24,4 @@ class OutsideExecution : public ExecutionPolicy {
   }
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

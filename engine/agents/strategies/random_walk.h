@@ -5,7 +5,7 @@
 #include "engine/agents/motion_policy.h"
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 class RandomWalk : public MotionPolicy {
  public:
@@ -21,4 +21,4 @@ class RandomWalk : public MotionPolicy {
   const AgentContext context_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -1,6 +1,6 @@
 #include "engine/agents/strategies/rbs_execution.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 ExecutionDecision DecideByRules(const RbsConfig& rbs, const RobotView& view, Stream& stream) {
   const double where_draw = stream.Uniform();
@@ -36,4 +36,4 @@ ExecutionDecision DecideByRules(const RbsConfig& rbs, const RobotView& view, Str
   return decision;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -5,7 +5,7 @@
 #include "engine/agents/execution_policy.h"
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::agents {
 
 // Takes exactly two draws.
 ExecutionDecision DecideByRules(const RbsConfig& rbs, const RobotView& view, Stream& stream);
@@ -23,4 +23,4 @@ class RbsExecution : public ExecutionPolicy {
   const AgentContext context_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::agents

@@ -12,7 +12,7 @@
 
 #include "engine/perception/vision/network.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 double RunMs(Network& network, const std::vector<std::uint8_t>& rgb, std::vector<float>& logits) {
@@ -48,13 +48,14 @@ void Compare(const Topology& topology, int frames, int batch, int rounds) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception
 
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 50;
   std::vector<int> batches;
   for (int i = 2; i < argc; ++i) batches.push_back(std::atoi(argv[i]));
   if (batches.empty()) batches = {11};
-  for (const int batch : batches) ed3r::Compare(ed3r::CompactTopology(), 33, batch, rounds);
-  ed3r::Compare(ed3r::FullSizeTopology(), 1, 1, std::max(1, rounds / 20));
+  for (const int batch : batches)
+    ed3r::perception::Compare(ed3r::perception::CompactTopology(), 33, batch, rounds);
+  ed3r::perception::Compare(ed3r::perception::FullSizeTopology(), 1, 1, std::max(1, rounds / 20));
 }

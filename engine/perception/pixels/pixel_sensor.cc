@@ -6,7 +6,7 @@
 
 #include "engine/perception/render/pictures.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 Renderer RendererOf(const PixelTier& tier, const Config& config, const SensorScenario& scenario) {
@@ -26,7 +26,7 @@ class PixelSensor : public Sensor {
         frame_threshold_(config.perception.frame_threshold),
         renderer_(RendererOf(tier, config, scenario)) {}
 
-  Detection Sense(const Pose& pose, DetectionModel model, std::uint32_t timestep,
+  Detection Sense(const robot::Pose& pose, DetectionModel model, std::uint32_t timestep,
                   std::uint32_t /*view*/) const override {
     const SensingFrames seen = renderer_.Sense(pose, timestep);
     const FrameDetector& detector = model == DetectionModel::kFull ? *detectors_.full : *detectors_.quantized;
@@ -53,7 +53,7 @@ std::unique_ptr<Sensor> MakePixelSensor(const PixelTier& tier, const Config& con
 }
 
 void WriteSensingPictures(const PixelTier& tier, const Config& config, const SensorScenario& scenario,
-                          const Pose& pose, std::uint32_t timestep, const std::string& stem) {
+                          const robot::Pose& pose, std::uint32_t timestep, const std::string& stem) {
   const Renderer renderer = RendererOf(tier, config, scenario);
   const FrameStack frames = renderer.Sense(pose, timestep).frames;
   const std::vector<double> full = Confidences(*tier.detectors.full, frames);
@@ -64,4 +64,4 @@ void WriteSensingPictures(const PixelTier& tier, const Config& config, const Sen
   WriteFramePictures(renderer, pose, timestep, captions, stem);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

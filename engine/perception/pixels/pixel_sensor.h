@@ -8,7 +8,7 @@
 #include "engine/perception/sensor.h"
 #include "engine/perception/vision/frame_detector.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // What all missions on one scene with one pair of detectors share, read-only. Threads: any number.
 struct PixelTier {
@@ -24,6 +24,6 @@ std::unique_ptr<Sensor> MakePixelSensor(const PixelTier& tier, const Config& con
 // PNG files of what the camera saw in one timestep, each frame with the confidences of both models: STEM_frames.png and
 // STEM_large.png. Throws UserError when they cannot be written.
 void WriteSensingPictures(const PixelTier& tier, const Config& config, const SensorScenario& scenario,
-                          const Pose& pose, std::uint32_t timestep, const std::string& stem);
+                          const robot::Pose& pose, std::uint32_t timestep, const std::string& stem);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

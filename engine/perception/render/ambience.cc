@@ -6,7 +6,7 @@
 #include "engine/core/random.h"
 #include "engine/perception/render/noise_volume.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -97,4 +97,4 @@ Colour Glare(const Ambience& ambience, float cos_to_sun) {
   return ambience.sun * (disc + std::max(0.0f, veil));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

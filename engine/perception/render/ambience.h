@@ -7,7 +7,7 @@
 #include "engine/config/perception.h"
 #include "engine/perception/render/light.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 struct Ambience {
   Eigen::Vector3f to_sun;       // unit
@@ -30,4 +30,4 @@ Colour SkyAlong(const Ambience& ambience, const Eigen::Vector3f& direction);
 // Veil of light that the lens adds near the sun's image; cos_to_sun between the ray and the sun.
 Colour Glare(const Ambience& ambience, float cos_to_sun);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

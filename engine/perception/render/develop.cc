@@ -7,7 +7,7 @@
 #include "engine/core/check.h"
 #include "engine/perception/render/light.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 // Weights of the four pixels around a sampling point, times the exposure.
@@ -95,4 +95,4 @@ void Develop(const RadiancePlanes& radiance, const PixelGrid& grid, const Shot& 
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -7,7 +7,7 @@
 #include "engine/perception/render/shade.h"
 #include "engine/perception/render/trace.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // How one frame is taken.
 struct Shot {
@@ -24,4 +24,4 @@ struct Shot {
 void Develop(const RadiancePlanes& radiance, const PixelGrid& grid, const Shot& shot,
              std::span<std::uint8_t> rgb);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // Linear radiance; 1 is a white wall in full sun.
 using Colour = Eigen::Array3f;
@@ -38,4 +38,4 @@ inline std::uint32_t Scramble(std::uint32_t x) {
 }
 inline float UnitOf(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }  // [0, 1)
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

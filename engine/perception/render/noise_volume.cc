@@ -5,7 +5,7 @@
 
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr std::uint64_t kKey = 0x5eed0f7ab1e;
@@ -103,4 +103,4 @@ float NoiseVolume::At(float x, float y, float z) const {
   return (south + fy * (north - south)) * (1.0f / 255.0f);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

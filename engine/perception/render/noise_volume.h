@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // Three octaves of gradient noise in kCells^3 bytes; the largest features have size 1, the period is kPeriod.
 // Threads: immutable once built; every const member may be called from any thread.
@@ -38,4 +38,4 @@ class NoiseVolume {
   std::vector<std::uint8_t> cells_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

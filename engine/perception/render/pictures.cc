@@ -9,7 +9,7 @@
 #include "engine/core/check.h"
 #include "engine/world/picture_file.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr int kGapPx = 4, kCaptionPx = 16;
@@ -33,7 +33,7 @@ cv::Mat Enlarged(const FrameStack& stack, int frame, int scale) {
 }  // namespace
 
 void WriteFrame(const FrameStack& stack, int frame, const std::string& path, int scale) {
-  WritePicture(Enlarged(stack, frame, scale), path);
+  world::WritePicture(Enlarged(stack, frame, scale), path);
 }
 
 void WriteContactSheet(const FrameStack& stack, const std::vector<std::string>& captions,
@@ -53,10 +53,10 @@ void WriteContactSheet(const FrameStack& stack, const std::vector<std::string>& 
                   {x, y + scale * stack.height_px + kCaptionPx - 4}, cv::FONT_HERSHEY_SIMPLEX, 0.4,
                   cv::Scalar(48, 44, 40), 1, cv::LINE_AA);
   }
-  WritePicture(sheet, path);
+  world::WritePicture(sheet, path);
 }
 
-void WriteFramePictures(const Renderer& renderer, const Pose& pose, std::uint32_t timestep,
+void WriteFramePictures(const Renderer& renderer, const robot::Pose& pose, std::uint32_t timestep,
                         const std::vector<std::string>& captions, const std::string& stem) {
   const SensingFrames sensed = renderer.Sense(pose, timestep);
   WriteContactSheet(sensed.frames, captions, stem + "_frames.png");
@@ -64,4 +64,4 @@ void WriteFramePictures(const Renderer& renderer, const Pose& pose, std::uint32_
   WriteFrame(renderer.Sense(pose, timestep, middle, {960, 540}).frames, 0, stem + "_large.png");
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -7,7 +7,7 @@
 #include "engine/perception/image.h"
 #include "engine/perception/render/renderer.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // One frame, each pixel enlarged to a square of `scale` pixels. Throws UserError when the file cannot be written.
 void WriteFrame(const FrameStack& stack, int frame, const std::string& path, int scale = 1);
@@ -18,7 +18,7 @@ void WriteContactSheet(const FrameStack& stack, const std::vector<std::string>& 
 
 // What the camera saw in one timestep: STEM_frames.png (a sheet of all its frames in the networks' size, with the
 // captions given, e.g. confidences) and STEM_large.png (the middle frame at 960 x 540).
-void WriteFramePictures(const Renderer& renderer, const Pose& pose, std::uint32_t timestep,
+void WriteFramePictures(const Renderer& renderer, const robot::Pose& pose, std::uint32_t timestep,
                         const std::vector<std::string>& captions, const std::string& stem);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -8,7 +8,7 @@
 #include "engine/core/check.h"
 #include "engine/perception/render/noise_volume.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr int kSteps = 24;      // samples on the way through the box around the plume
@@ -34,7 +34,7 @@ struct Interval {
 
 class Plume {
  public:
-  Plume(const FireSite& site, const FireShape& shape, const Eigen::Vector3f& to_sun)
+  Plume(const world::FireSite& site, const world::FireShape& shape, const Eigen::Vector3f& to_sun)
       : base_m_(site.base_m.cast<float>()),
         flame_height_m_(static_cast<float>(shape.flame_height_m)),
         flame_radius_m_(static_cast<float>(shape.flame_radius_m)),
@@ -162,8 +162,8 @@ Colour FlameLight(float opacity) {
 
 class LayerBuilder {
  public:
-  LayerBuilder(const SensingTrace& trace, const Plume& plume, const FireSite& site, const Ambience& ambience,
-               const FogLayer& fog, std::span<const PlumePhase> phases)
+  LayerBuilder(const SensingTrace& trace, const Plume& plume, const world::FireSite& site,
+               const Ambience& ambience, const FogLayer& fog, std::span<const PlumePhase> phases)
       : trace_(trace), plume_(plume), ambience_(ambience), fog_(fog) {
     distance_m_ = (site.base_m.cast<float>() - trace.camera_m).norm();
     haze_ = 1.0f - Attenuation(distance_m_ / ambience.haze_range_m);
@@ -294,7 +294,7 @@ class LayerBuilder {
 
 }  // namespace
 
-PlumeLayers TracePlume(const SensingTrace& trace, const FireSite& site, const FireShape& shape,
+PlumeLayers TracePlume(const SensingTrace& trace, const world::FireSite& site, const world::FireShape& shape,
                        const Ambience& ambience, const FogLayer& fog, std::span<const PlumePhase> phases) {
   const Plume plume(site, shape, ambience.to_sun);
   PlumeLayers layers = LayerBuilder(trace, plume, site, ambience, fog, phases).Build();
@@ -304,4 +304,4 @@ PlumeLayers TracePlume(const SensingTrace& trace, const FireSite& site, const Fi
   return layers;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -14,7 +14,7 @@
 #include "engine/perception/render/turbulence.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // Ground truth of one view: what of fire and smoke the picture of a camera at rest shows, averaged over the flicker.
 // A pixel counts where at least kVisibleOpacity of its light is flame, or smoke, after haze and fog.
@@ -42,7 +42,7 @@ struct PlumeLayers {
   GroundTruth truth;
 };
 
-PlumeLayers TracePlume(const SensingTrace& trace, const FireSite& site, const FireShape& shape,
+PlumeLayers TracePlume(const SensingTrace& trace, const world::FireSite& site, const world::FireShape& shape,
                        const Ambience& ambience, const FogLayer& fog, std::span<const PlumePhase> phases);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -11,7 +11,7 @@
 #include "engine/core/random.h"
 #include "engine/perception/view.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr float kFogFlatness = 0.35f;  // height of a bank over its radius
@@ -109,7 +109,7 @@ std::string_view NameOf(PropKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-std::vector<Prop> DrawProps(const Scene& scene, const PerceptionConfig& perception, std::uint64_t seed,
+std::vector<Prop> DrawProps(const world::Scene& scene, const PerceptionConfig& perception, std::uint64_t seed,
                             std::uint32_t scenario) {
   std::vector<Prop> props;
   const auto distractors = DrawDistractors(scene, perception, seed, scenario);
@@ -172,4 +172,4 @@ float FogDepth(const Prop& fog, const Eigen::Vector3f& origin_m, const Eigen::Ve
   return kThickness * (integral(to) - integral(from)) / fog.radius_m;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -12,7 +12,7 @@
 #include "engine/perception/render/light.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 enum class PropKind : std::uint8_t { kRoof, kVehicle, kRock, kAutumn, kFog };
 inline constexpr int kPropKinds = 5;
@@ -36,7 +36,7 @@ struct PropHit {
   bool top = false;  // on the roof rather than a wall
 };
 
-std::vector<Prop> DrawProps(const Scene& scene, const PerceptionConfig& perception, std::uint64_t seed,
+std::vector<Prop> DrawProps(const world::Scene& scene, const PerceptionConfig& perception, std::uint64_t seed,
                             std::uint32_t scenario);
 
 // A house has a gable roof over its box, a vehicle is a box. False where the ray passes by.
@@ -47,4 +47,4 @@ bool MeetsProp(const Prop& prop, const Eigen::Vector3f& origin_m, const Eigen::V
 float FogDepth(const Prop& fog, const Eigen::Vector3f& origin_m, const Eigen::Vector3f& direction,
                float end_m);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -13,7 +13,7 @@
 #include "engine/perception/render/develop.h"
 #include "engine/perception/render/shade.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr double kSwayMemory = 0.8;   // of the camera's sway from frame to frame
@@ -83,13 +83,13 @@ Renderer::Renderer(std::shared_ptr<const TraceScene> scene, int site, const Perc
              fmt::format("site {}", site));
 }
 
-SensingFrames Renderer::Sense(const Pose& pose, std::uint32_t timestep) const {
+SensingFrames Renderer::Sense(const robot::Pose& pose, std::uint32_t timestep) const {
   std::vector<int> all(static_cast<std::size_t>(sensing_.Frames()));
   std::iota(all.begin(), all.end(), 0);
   return Sense(pose, timestep, all, {perception_.render.width_px, perception_.render.height_px});
 }
 
-SensingFrames Renderer::Sense(const Pose& pose, std::uint32_t timestep, std::span<const int> frames,
+SensingFrames Renderer::Sense(const robot::Pose& pose, std::uint32_t timestep, std::span<const int> frames,
                               PictureSize size) const {
   ED3R_CHECK(size.width_px >= 16 && size.width_px <= 1920 && size.height_px >= 9 && size.height_px <= 1080,
              fmt::format("{} x {} px", size.width_px, size.height_px));
@@ -99,8 +99,8 @@ SensingFrames Renderer::Sense(const Pose& pose, std::uint32_t timestep, std::spa
       perception_.render.jitter_deg * std::numbers::pi / 180.0 * size.width_px / (2.0 * std::tan(half_rad));
   const PixelGrid grid{size.width_px, size.height_px, static_cast<int>(std::ceil(kSwayLimit * sway_px)) + 1};
 
-  const Scene& world = scene_->World();
-  const FireSite* fire = site_ < 0 ? nullptr : &world.Sites()[static_cast<std::size_t>(site_)];
+  const world::Scene& world = scene_->World();
+  const world::FireSite* fire = site_ < 0 ? nullptr : &world.Sites()[static_cast<std::size_t>(site_)];
   const SensingTrace trace = scene_->Trace(pose, sensing_, grid, ambience_, props_);
   const StillPicture still = Shade(trace, world, ambience_, props_, fire);
   std::vector<PlumePhase> phases;
@@ -129,4 +129,4 @@ SensingFrames Renderer::Sense(const Pose& pose, std::uint32_t timestep, std::spa
   return out;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -24,7 +24,7 @@
 #include "engine/robot/motion.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 struct SensingFrames {
   FrameStack frames;
@@ -45,10 +45,10 @@ class Renderer {
            const SensingConfig& sensing, std::uint64_t seed, std::uint32_t scenario);
 
   // All frames of a timestep's sensing period, in the size of perception.render.
-  SensingFrames Sense(const Pose& pose, std::uint32_t timestep) const;
+  SensingFrames Sense(const robot::Pose& pose, std::uint32_t timestep) const;
 
   // Some frames of it (numbers from 0), in any size. Throws InternalError for a size or number out of range.
-  SensingFrames Sense(const Pose& pose, std::uint32_t timestep, std::span<const int> frames,
+  SensingFrames Sense(const robot::Pose& pose, std::uint32_t timestep, std::span<const int> frames,
                       PictureSize size) const;
 
   const Ambience& Weather() const { return ambience_; }
@@ -65,4 +65,4 @@ class Renderer {
   std::vector<Prop> props_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -5,7 +5,7 @@
 
 #include "engine/perception/render/noise_volume.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 const Colour kGrass(0.13f, 0.19f, 0.055f);
@@ -31,8 +31,8 @@ struct Surface {
 
 class Shader {
  public:
-  Shader(const SensingTrace& trace, const Scene& scene, const Ambience& ambience, std::span<const Prop> props,
-         const FireSite* fire)
+  Shader(const SensingTrace& trace, const world::Scene& scene, const Ambience& ambience,
+         std::span<const Prop> props, const world::FireSite* fire)
       : trace_(trace), scene_(scene), ambience_(ambience), props_(props), noise_(NoiseVolume::Shared()) {
     for (const Prop& prop : props) {
       if (prop.kind == PropKind::kFog) fog_.push_back(&prop);
@@ -40,7 +40,7 @@ class Shader {
       if (prop.kind == PropKind::kAutumn) groves_.push_back(&prop);
     }
     if (fire != nullptr) {
-      const FireShape& shape = scene.Fire();
+      const world::FireShape& shape = scene.Fire();
       fire_m_ =
           fire->base_m.cast<float>() + Eigen::Vector3f(0, 0, 0.4f * static_cast<float>(shape.flame_height_m));
       glow_ = 1.3f;
@@ -136,7 +136,7 @@ class Shader {
   }
 
   Surface Crown(std::size_t i, const Eigen::Vector3f& p) const {
-    const Tree& tree = scene_.Trees()[static_cast<std::size_t>(trace_.item[i])];
+    const world::Tree& tree = scene_.Trees()[static_cast<std::size_t>(trace_.item[i])];
     const std::uint32_t bits = Scramble(static_cast<std::uint32_t>(trace_.item[i]) + 0x9e37U);
     Colour leaves = kLeaves[bits & 3] * (0.75f + 0.5f * UnitOf(Scramble(bits + 1)));
     if (UnitOf(Scramble(bits + 2)) < ambience_.autumn_share) leaves = kAutumnLeaves[(bits >> 4) % 3];
@@ -185,7 +185,7 @@ class Shader {
   }
 
   const SensingTrace& trace_;
-  const Scene& scene_;
+  const world::Scene& scene_;
   const Ambience& ambience_;
   std::span<const Prop> props_;
   const NoiseVolume& noise_;
@@ -197,8 +197,8 @@ class Shader {
 
 }  // namespace
 
-StillPicture Shade(const SensingTrace& trace, const Scene& scene, const Ambience& ambience,
-                   std::span<const Prop> props, const FireSite* fire) {
+StillPicture Shade(const SensingTrace& trace, const world::Scene& scene, const Ambience& ambience,
+                   std::span<const Prop> props, const world::FireSite* fire) {
   const Shader shader(trace, scene, ambience, props, fire);
   const std::size_t pixels = trace.grid.Pixels();
   StillPicture still{.radiance = RadiancePlanes(pixels), .fog = {}, .mean = 0.0f};
@@ -224,4 +224,4 @@ StillPicture Shade(const SensingTrace& trace, const Scene& scene, const Ambience
   return still;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

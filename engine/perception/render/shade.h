@@ -9,7 +9,7 @@
 #include "engine/perception/render/trace.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // Linear radiance in three planes, as the grid lies.
 struct RadiancePlanes {
@@ -37,7 +37,7 @@ struct StillPicture {
 };
 
 // fire: whose glow lights its surroundings; none where it is null.
-StillPicture Shade(const SensingTrace& trace, const Scene& scene, const Ambience& ambience,
-                   std::span<const Prop> props, const FireSite* fire);
+StillPicture Shade(const SensingTrace& trace, const world::Scene& scene, const Ambience& ambience,
+                   std::span<const Prop> props, const world::FireSite* fire);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

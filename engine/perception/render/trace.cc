@@ -8,7 +8,7 @@
 #include "engine/perception/view.h"
 #include "engine/world/bake.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr double kRangeM = 2000.0;  // beyond any diagonal of an area
@@ -49,7 +49,7 @@ void SetDirections(SensingTrace& trace, const Camera& camera) {
 }
 
 // A crown's own normal: that of a rounded body, so that six flat sides look like foliage.
-Eigen::Vector3f CrownNormal(const Tree& tree, const Eigen::Vector3f& point_m) {
+Eigen::Vector3f CrownNormal(const world::Tree& tree, const Eigen::Vector3f& point_m) {
   const float middle_m = static_cast<float>(tree.ground_m + tree.height_m - 0.65 * tree.crown_depth_m);
   const float width = 1.0f / static_cast<float>(tree.crown_radius_m);
   const float depth = 2.0f / static_cast<float>(tree.crown_depth_m);
@@ -59,7 +59,7 @@ Eigen::Vector3f CrownNormal(const Tree& tree, const Eigen::Vector3f& point_m) {
   return outward / std::max(1e-3f, outward.norm());
 }
 
-Eigen::Vector3f TrunkNormal(const Tree& tree, const Eigen::Vector3f& point_m) {
+Eigen::Vector3f TrunkNormal(const world::Tree& tree, const Eigen::Vector3f& point_m) {
   const Eigen::Vector3f outward(point_m.x() - static_cast<float>(tree.x_m),
                                 point_m.y() - static_cast<float>(tree.y_m), 0.0f);
   return outward / std::max(1e-3f, outward.norm());
@@ -67,8 +67,8 @@ Eigen::Vector3f TrunkNormal(const Tree& tree, const Eigen::Vector3f& point_m) {
 
 }  // namespace
 
-TraceScene::TraceScene(const Scene& scene) : scene_(scene) {
-  const Terrain& ground = scene.Ground();
+TraceScene::TraceScene(const world::Scene& scene) : scene_(scene) {
+  const world::Terrain& ground = scene.Ground();
   terrain_triangles_ = static_cast<unsigned>(2 * (ground.columns - 1) * (ground.rows - 1));
   const auto height = [&](int column, int row) {
     column = std::clamp(column, 0, ground.columns - 1);
@@ -91,7 +91,7 @@ TraceScene::TraceScene(const Scene& scene) : scene_(scene) {
   far_ground_m_ = static_cast<float>(border_sum_m / border_nodes) - 10.0f;
 }
 
-SensingTrace TraceScene::Trace(const Pose& pose, const SensingConfig& sensing, const PixelGrid& grid,
+SensingTrace TraceScene::Trace(const robot::Pose& pose, const SensingConfig& sensing, const PixelGrid& grid,
                                const Ambience& ambience, std::span<const Prop> props) const {
   ED3R_CHECK(grid.width_px > 0 && grid.height_px > 0 && grid.margin_px >= 0, "an empty picture");
   SensingTrace trace;
@@ -108,13 +108,13 @@ SensingTrace TraceScene::Trace(const Pose& pose, const SensingConfig& sensing, c
 
   const std::vector<std::uint32_t> order = BlockOrder(grid);
   std::vector<Eigen::Vector3f> rays(pixels);
-  std::vector<SurfaceHit> hits(pixels);
+  std::vector<world::SurfaceHit> hits(pixels);
   for (std::size_t k = 0; k < pixels; ++k) rays[k] = trace.direction[order[k]];
   scene_.Geometry().FirstHits(pose.position_m, rays, kRangeM, hits);
   for (std::size_t k = 0; k < pixels; ++k) {
     const std::size_t i = order[k];
     trace.distance_m[i] = hits[k].distance_m;
-    if (hits[k].triangle == SurfaceHit::kNone)
+    if (hits[k].triangle == world::SurfaceHit::kNone)
       AddFarGround(trace, i);
     else
       Identify(trace, i, hits[k].triangle);
@@ -132,9 +132,9 @@ void TraceScene::Identify(SensingTrace& trace, std::size_t pixel, unsigned trian
     return;
   }
   const unsigned after = triangle - terrain_triangles_;
-  const unsigned index = after / kTrianglesPerTree;
-  const Tree& tree = scene_.Trees()[index];
-  const bool trunk = after % kTrianglesPerTree < kTrunkTriangles;
+  const unsigned index = after / world::kTrianglesPerTree;
+  const world::Tree& tree = scene_.Trees()[index];
+  const bool trunk = after % world::kTrianglesPerTree < world::kTrunkTriangles;
   trace.item[pixel] = static_cast<std::int32_t>(index);
   trace.material[pixel] = trunk ? Material::kTrunk : Material::kCrown;
   trace.normal[pixel] = trunk ? TrunkNormal(tree, point_m) : CrownNormal(tree, point_m);
@@ -206,7 +206,7 @@ void TraceScene::AddSun(SensingTrace& trace, const std::vector<std::uint32_t>& o
 }
 
 Eigen::Vector3f TraceScene::GroundNormal(float x_m, float y_m) const {
-  const Terrain& ground = scene_.Ground();
+  const world::Terrain& ground = scene_.Ground();
   const float cell = 1.0f / static_cast<float>(ground.cell_m);
   const float x = std::clamp(x_m * cell, 0.0f, static_cast<float>(ground.columns - 1) - 0.001f);
   const float y = std::clamp(y_m * cell, 0.0f, static_cast<float>(ground.rows - 1) - 0.001f);
@@ -220,4 +220,4 @@ Eigen::Vector3f TraceScene::GroundNormal(float x_m, float y_m) const {
   return normal / normal.norm();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

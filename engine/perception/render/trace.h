@@ -12,7 +12,7 @@
 #include "engine/robot/motion.h"
 #include "engine/world/scene.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 enum class Material : std::uint8_t { kSky, kFarGround, kTerrain, kTrunk, kCrown, kProp };
 
@@ -50,14 +50,14 @@ struct SensingTrace {
 // What tracing needs to know of a scene beyond its geometry. Built once per scene; threads may share it.
 class TraceScene {
  public:
-  explicit TraceScene(const Scene& scene);
+  explicit TraceScene(const world::Scene& scene);
 
   // sensing gives the field of view, the grid its size; the picture's middle is the optical axis. The height of the
   // picture follows from its pixels being square.
-  SensingTrace Trace(const Pose& pose, const SensingConfig& sensing, const PixelGrid& grid,
+  SensingTrace Trace(const robot::Pose& pose, const SensingConfig& sensing, const PixelGrid& grid,
                      const Ambience& ambience, std::span<const Prop> props) const;
 
-  const Scene& World() const { return scene_; }
+  const world::Scene& World() const { return scene_; }
 
  private:
   void Identify(SensingTrace& trace, std::size_t pixel, unsigned triangle) const;
@@ -67,10 +67,10 @@ class TraceScene {
               const Eigen::Vector3f& to_sun) const;
   Eigen::Vector3f GroundNormal(float x_m, float y_m) const;
 
-  const Scene& scene_;
+  const world::Scene& scene_;
   unsigned terrain_triangles_;
   float far_ground_m_;                        // height of the land beyond the area
   std::vector<Eigen::Vector3f> node_normal_;  // of the terrain, as its nodes lie
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

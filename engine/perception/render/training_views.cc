@@ -9,7 +9,7 @@
 #include "engine/core/random.h"
 #include "engine/perception/view.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr int kTries = 400;
@@ -18,7 +18,7 @@ constexpr double kNearestM = 10.0, kFarthestM = 350.0;
 constexpr double kLowestM = 5.0, kHighestM = 100.0;  // above ground
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-bool HasRoom(const Scene& scene, const Eigen::Vector3d& at_m) {
+bool HasRoom(const world::Scene& scene, const Eigen::Vector3d& at_m) {
   const Eigen::Vector3d& size_m = scene.SizeM();
   if ((at_m.array() < 0.0).any() || (at_m.array() > size_m.array()).any()) return false;
   if (at_m.z() < scene.Ground().HeightAt(at_m.x(), at_m.y()) + kLowestM) return false;
@@ -30,13 +30,13 @@ bool HasRoom(const Scene& scene, const Eigen::Vector3d& at_m) {
   return true;
 }
 
-Eigen::Vector3d Anywhere(const Scene& scene, Stream& stream) {
+Eigen::Vector3d Anywhere(const world::Scene& scene, Stream& stream) {
   const double x_m = stream.Uniform(0.0, scene.SizeM().x()), y_m = stream.Uniform(0.0, scene.SizeM().y());
   return {x_m, y_m, scene.Ground().HeightAt(x_m, y_m) + stream.Uniform(kLowestM, kHighestM)};
 }
 
 // At a distance whose logarithm is uniform: looks from near are as many as looks from far.
-Eigen::Vector3d Around(const Scene& scene, const Eigen::Vector3d& target_m, double nearest_m,
+Eigen::Vector3d Around(const world::Scene& scene, const Eigen::Vector3d& target_m, double nearest_m,
                        double farthest_m, Stream& stream) {
   const double distance_m = std::exp(stream.Uniform(std::log(nearest_m), std::log(farthest_m)));
   const double azimuth_rad = stream.Uniform(0.0, 2.0 * std::numbers::pi);
@@ -46,7 +46,7 @@ Eigen::Vector3d Around(const Scene& scene, const Eigen::Vector3d& target_m, doub
 }
 
 // Turns the camera so that the target lies somewhere in the frame, unless it is above a level camera's reach.
-void Aim(Pose& pose, const Eigen::Vector3d& target_m, Stream& stream) {
+void Aim(robot::Pose& pose, const Eigen::Vector3d& target_m, Stream& stream) {
   const Eigen::Vector3d towards = target_m - pose.position_m;
   const double level_m = std::hypot(towards.x(), towards.y());
   pose.yaw_rad = std::atan2(towards.y(), towards.x()) + stream.Uniform(-36.0, 36.0) * kDegree;
@@ -55,9 +55,9 @@ void Aim(Pose& pose, const Eigen::Vector3d& target_m, Stream& stream) {
   pose.tilt_rad = std::clamp(tilt_rad, 0.0, 90.0 * kDegree);
 }
 
-Pose DrawPose(const Scene& scene, const Eigen::Vector3d* target_m, double nearest_m, double farthest_m,
-              Stream& stream) {
-  Pose pose;
+robot::Pose DrawPose(const world::Scene& scene, const Eigen::Vector3d* target_m, double nearest_m,
+                     double farthest_m, Stream& stream) {
+  robot::Pose pose;
   pose.position_m =
       target_m != nullptr ? Around(scene, *target_m, nearest_m, farthest_m, stream) : Anywhere(scene, stream);
   pose.yaw_rad = stream.Uniform(-std::numbers::pi, std::numbers::pi);
@@ -74,7 +74,7 @@ ViewPlan PlanView(std::span<const std::shared_ptr<const TraceScene>> scenes, con
   Stream stream(seed, number, Purpose::kDataSet);
   ViewPlan plan;
   plan.world = static_cast<int>(stream.Below(static_cast<std::uint32_t>(scenes.size())));
-  const Scene& scene = scenes[static_cast<std::size_t>(plan.world)]->World();
+  const world::Scene& scene = scenes[static_cast<std::size_t>(plan.world)]->World();
   ED3R_CHECK(!scene.Sites().empty(), "a world without fire sites");
   plan.site = static_cast<int>(stream.Below(static_cast<std::uint32_t>(scene.Sites().size())));
   const bool want_fire = number % 2 == 0;
@@ -88,7 +88,7 @@ ViewPlan PlanView(std::span<const std::shared_ptr<const TraceScene>> scenes, con
     if (want_fire) target_m = &middle_m;
     if (want_distractor && !distractors.empty())
       target_m = &distractors[stream.Below(static_cast<std::uint32_t>(distractors.size()))].position_m;
-    const Pose pose = DrawPose(scene, target_m, kNearestM, want_fire ? kFarthestM : 150.0, stream);
+    const robot::Pose pose = DrawPose(scene, target_m, kNearestM, want_fire ? kFarthestM : 150.0, stream);
     if (!HasRoom(scene, pose.position_m)) continue;
     plan.pose = pose;
     if (fire.Look(pose, config.sensing, config.perception, {}).fire_in_view == want_fire) return plan;
@@ -97,7 +97,7 @@ ViewPlan PlanView(std::span<const std::shared_ptr<const TraceScene>> scenes, con
   return plan;
 }
 
-std::string PropsInView(const Renderer& renderer, const Scene& scene, const Pose& pose,
+std::string PropsInView(const Renderer& renderer, const world::Scene& scene, const robot::Pose& pose,
                         const SensingConfig& sensing) {
   const Camera camera(pose, sensing);
   std::array<bool, kPropKinds> seen{};
@@ -115,4 +115,4 @@ std::string PropsInView(const Renderer& renderer, const Scene& scene, const Pose
   return names;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -16,12 +16,12 @@
 #include "engine/perception/render/trace.h"
 #include "engine/robot/motion.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 struct ViewPlan {
   int world = 0;  // index into the scenes
   int site = 0;
-  Pose pose;
+  robot::Pose pose;
 };
 
 // View `number` of the set of this seed: a pure function of its arguments.
@@ -30,7 +30,7 @@ ViewPlan PlanView(std::span<const std::shared_ptr<const TraceScene>> scenes, con
 
 // Kinds of distractors of which some part lies in the frame and in line of sight, in the order of PropKind,
 // separated by ';'.
-std::string PropsInView(const Renderer& renderer, const Scene& scene, const Pose& pose,
+std::string PropsInView(const Renderer& renderer, const world::Scene& scene, const robot::Pose& pose,
                         const SensingConfig& sensing);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -6,7 +6,7 @@
 #include "engine/core/check.h"
 #include "engine/perception/render/noise_volume.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr float kMeanNoise = 0.5f;
@@ -126,4 +126,4 @@ void AbsorbInLanes(std::span<const PlumeSample> samples, const LaneDrifts& drift
   absorb_lanes(samples, drifts, sums);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // State of the turbulence in one frame.
 struct PlumePhase {
@@ -60,4 +60,4 @@ LaneDrifts LanesOf(std::span<const PlumePhase> phases);  // 1 .. kLanes of them
 // Up to the first hidden sample. The same bits on every instruction set.
 void AbsorbInLanes(std::span<const PlumeSample> samples, const LaneDrifts& drifts, LaneSums& sums);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -7,7 +7,7 @@
 #include "engine/perception/vision/pool.h"
 #include "engine/perception/vision/resize.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 // A third of a sensing period's 33 frames: the activations of that many stay in the second-level cache.
@@ -49,4 +49,4 @@ std::shared_ptr<const FrameDetector> MakeNetworkDetector(std::shared_ptr<const D
   return std::make_shared<NetworkDetector>(std::move(model), arithmetic);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -17,11 +17,11 @@ ed3r_builtin_weights_end:
 extern "C" const char ed3r_builtin_weights_begin[];
 extern "C" const char ed3r_builtin_weights_end[];
 
-namespace ed3r {
+namespace ed3r::perception {
 
 std::string_view BuiltinDetectorBytes() {
   return {ed3r_builtin_weights_begin,
           static_cast<std::size_t>(ed3r_builtin_weights_end - ed3r_builtin_weights_begin)};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -5,7 +5,7 @@
 
 #include "engine/core/random.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 std::vector<std::int8_t> QuantizedWeights(const LayerWeights& layer, const LayerQuantization& quantization) {
   const auto limit = static_cast<float>(WeightLimit(quantization.input_max));
@@ -49,4 +49,4 @@ DetectorModel RandomDetectorModel(const Topology& topology, std::uint64_t seed) 
   return model;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

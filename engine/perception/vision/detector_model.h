@@ -8,7 +8,7 @@
 
 #include "engine/perception/vision/topology.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 struct LayerWeights {
   std::vector<float> weights;  // out channel, in channel, row, column
@@ -58,4 +58,4 @@ double Confidence(double logit, const Calibration& calibration);
 // tests and benchmarks of the arithmetic: it has learnt nothing.
 DetectorModel RandomDetectorModel(const Topology& topology, std::uint64_t seed);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -6,7 +6,7 @@
 #include "engine/perception/vision/network.h"
 #include "engine/perception/vision/onednn.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 using dnnl::memory;
@@ -129,4 +129,4 @@ std::unique_ptr<Network> MakeFloatNetwork(const DetectorModel& model, int batch)
   return std::make_unique<FloatNetwork>(model, batch);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

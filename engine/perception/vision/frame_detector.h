@@ -15,7 +15,7 @@
 #include "engine/core/check.h"
 #include "engine/perception/image.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // A network that fails on a frame, or whose answer is no confidence: not a number, or outside [0, 1]. what() is one line
 // that begins with the key and the path of the network. A mission that meets one has failed.
@@ -43,4 +43,4 @@ struct DetectorPair {
 // missing, is no network, declares another input or output than the configuration, or does not answer as it says.
 DetectorPair LoadDetectors(const DetectorConfig& config);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -7,7 +7,7 @@
 #include "engine/perception/vision/onednn.h"
 #include "engine/perception/vision/requantize.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 using dnnl::memory;
@@ -169,4 +169,4 @@ std::unique_ptr<Network> MakeIntegerNetwork(const DetectorModel& model, int batc
   return std::make_unique<IntegerNetwork>(model, batch);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "engine/config/parameters.h"
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/sha256.h"
@@ -11,10 +12,21 @@
 #include "engine/perception/vision/onnx_detector.h"
 #include "engine/perception/vision/onnx_external.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr std::string_view kBuiltin = "builtin";
+
+// How the networks are asked. The files themselves count by their bytes, not by their names.
+std::string SettingsText(const DetectorConfig& detector) {
+  Config config;
+  config.perception.detector = detector;
+  std::string text;
+  for (const ParameterInfo& parameter : Parameters())
+    if (parameter.key.starts_with("perception.detector.") && !parameter.is_file)
+      text += fmt::format("{}={}\n", parameter.key, GetParameter(config, parameter.key));
+  return text;
+}
 
 std::string ReadBytes(const std::string& key, const std::string& path) {
   std::string bytes, why;
@@ -34,11 +46,7 @@ std::shared_ptr<const FrameDetector> Load(const std::string& key, const std::str
   if (!ours) bytes = WithWeightsInside(std::move(bytes), name, fmt::format("{}: {}", key, name));
   fingerprint.Update(fmt::format("{} {}\n", key, bytes.size()));
   fingerprint.Update(bytes);
-  if (!ours) {
-    fingerprint.Update(
-        fmt::format("{} {} {} {}\n", config.sd_red, config.sd_green, config.sd_blue, config.output_name));
-    return MakeOnnxDetector(key, name, std::move(bytes), config);
-  }
+  if (!ours) return MakeOnnxDetector(key, name, std::move(bytes), config);
   auto model =
       std::make_shared<const DetectorModel>(ParseDetectorModel(bytes, fmt::format("{}: {}", key, name)));
   if (arithmetic == Arithmetic::kInteger && model->quantization.empty())
@@ -64,12 +72,9 @@ DetectorPair LoadDetectors(const DetectorConfig& config) {
   pair.full = Load("perception.detector.full", config.full, Arithmetic::kFloat, config, fingerprint);
   pair.quantized =
       Load("perception.detector.quantized", config.quantized, Arithmetic::kInteger, config, fingerprint);
-  fingerprint.Update(fmt::format("{} {} {} {} {} {} {} {} {}", config.input_width_px, config.input_height_px,
-                                 NameOf(config.channel_order), config.scale, config.mean_red,
-                                 config.mean_green, config.mean_blue, config.output_index,
-                                 NameOf(config.output)));
+  fingerprint.Update(SettingsText(config));
   pair.fingerprint = fingerprint.Hex();
   return pair;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

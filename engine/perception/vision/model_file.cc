@@ -7,7 +7,7 @@
 #include "engine/core/check.h"
 #include "engine/core/sealed_file.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr SealedFormat kFormat{.magic = "ED3RCNN\n", .version = 1, .what = "detector network"};
@@ -164,4 +164,4 @@ DetectorModel ReadDetectorModel(const std::string& path) {
   return ModelReader(payload, path).Read();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

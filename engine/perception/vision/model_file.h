@@ -14,7 +14,7 @@
 
 #include "engine/perception/vision/detector_model.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // Atomic. Throws UserError where the disk refuses.
 void WriteDetectorModel(const std::string& path, const DetectorModel& model);
@@ -29,4 +29,4 @@ DetectorModel ParseDetectorModel(std::string_view bytes, const std::string& name
 // The file compiled into the program (weights/compact.ed3rnet).
 std::string_view BuiltinDetectorBytes();
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -10,7 +10,7 @@
 
 #include "engine/perception/vision/detector_model.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 class Network {
  public:
@@ -29,4 +29,4 @@ std::unique_ptr<Network> MakeFloatNetwork(const DetectorModel& model, int batch)
 // The model must have quantisation scales.
 std::unique_ptr<Network> MakeIntegerNetwork(const DetectorModel& model, int batch);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

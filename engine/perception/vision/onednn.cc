@@ -6,7 +6,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 const dnnl::engine& PinnedEngine() {
   static const dnnl::engine engine = [] {
@@ -44,4 +44,4 @@ dnnl::memory Copied(const dnnl::memory& from, const dnnl::memory::desc& wanted) 
   return to;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

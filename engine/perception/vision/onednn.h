@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // Restricts oneDNN to AVX2 for the whole process, so that single-precision sums do not depend on the CPU, and returns
 // its CPU engine. Call it before anything else uses oneDNN. Throws UserError on a CPU without AVX2, InternalError when
@@ -51,4 +51,4 @@ dnnl::memory ZeroedMemory(const dnnl::memory::desc& description);
 // A copy of `from` in the layout of `wanted`.
 dnnl::memory Copied(const dnnl::memory& from, const dnnl::memory::desc& wanted);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -20,7 +20,7 @@
 #include "engine/perception/vision/resize.h"
 #include "engine/world/quiet_opencv.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 // A softmax in single precision may end this far beyond 1.
@@ -36,7 +36,7 @@ class OnnxDetector final : public FrameDetector {
     outline_ = OutlineOf(bytes, name_);
     reading_ = ReadingOf(outline_, config_, name_);
     bytes_ = ForOpenCv(bytes, outline_, reading_, name_);
-    QuietOpenCv();
+    world::QuietOpenCv();
     cv::setNumThreads(1);
     Probe();
   }
@@ -192,4 +192,4 @@ std::shared_ptr<const FrameDetector> MakeOnnxDetector(const std::string& key, co
   return std::make_shared<OnnxDetector>(key, path, std::move(bytes), config);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

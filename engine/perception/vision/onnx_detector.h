@@ -7,7 +7,7 @@
 #include "engine/config/detector.h"
 #include "engine/perception/vision/frame_detector.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // `key` stands in messages (perception.detector.full); `bytes` is the model, its weights inside, `path` its name. Sets
 // OpenCV's threads to one and silences it, for the whole process. Throws UserError for bytes that are no network that
@@ -16,4 +16,4 @@ namespace ed3r {
 std::shared_ptr<const FrameDetector> MakeOnnxDetector(const std::string& key, const std::string& path,
                                                       std::string bytes, const DetectorConfig& config);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -13,7 +13,7 @@
 #include "engine/core/protobuf.h"
 #include "engine/perception/vision/onnx_fields.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 namespace fs = std::filesystem;
@@ -163,4 +163,4 @@ std::string WithWeightsInside(std::string bytes, const std::string& path, const 
   return inliner.found() ? inside : bytes;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

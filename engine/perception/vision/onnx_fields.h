@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace ed3r::onnx {
+namespace ed3r::perception::onnx {
 
 enum ModelField : std::uint32_t { kProducer = 2, kGraph = 7 };
 enum GraphField : std::uint32_t {
@@ -68,4 +68,4 @@ inline constexpr std::int64_t kOpenSide = -1;     // what some exporters write f
 // "float16"; "of the number 99" for what no version of the format has.
 std::string TypeName(std::uint64_t type);
 
-}  // namespace ed3r::onnx
+}  // namespace ed3r::perception::onnx

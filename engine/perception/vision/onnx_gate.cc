@@ -11,7 +11,7 @@
 #include "engine/core/protobuf.h"
 #include "engine/perception/vision/onnx_fields.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr std::int64_t kMaxDimension = 1 << 24;
@@ -197,4 +197,4 @@ class Gate {
 
 void CheckOnnx(std::string_view bytes, const std::string& name) { Gate(name).CheckModel(bytes); }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

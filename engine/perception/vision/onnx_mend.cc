@@ -11,7 +11,7 @@
 #include "engine/core/protobuf.h"
 #include "engine/perception/vision/onnx_fields.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 struct Attribute {
@@ -202,4 +202,4 @@ std::vector<std::string> Mended(std::string_view node, const OnnxSurroundings& a
   return Mender(node, around, name).Mended();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // What the steps stand among.
 struct OnnxSurroundings {
@@ -31,4 +31,4 @@ void AddBound(std::string_view tensor, const std::string& value, const std::stri
 std::vector<std::string> Mended(std::string_view node, const OnnxSurroundings& around,
                                 const std::string& name);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -7,7 +7,7 @@
 #include "engine/core/protobuf.h"
 #include "engine/perception/vision/onnx_fields.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 std::string TensorNameOf(std::string_view bytes, const std::string& name) {
@@ -112,4 +112,4 @@ OnnxOutline OutlineOf(std::string_view bytes, const std::string& name) {
   return outline;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

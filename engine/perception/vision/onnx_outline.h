@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::perception {
 
 struct OnnxDim {
   std::int64_t size = 0;  // 0: told by what it is fed with
@@ -45,4 +45,4 @@ OnnxOutline OutlineOf(std::string_view bytes, const std::string& name);
 // One value's message.
 OnnxValue ParseOnnxValue(std::string_view bytes, const std::string& name);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -10,7 +10,7 @@
 #include "engine/core/check.h"
 #include "engine/perception/vision/onnx_fields.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr char kSizeKeys[] = "perception.detector.input_width_px and input_height_px";
@@ -167,4 +167,4 @@ void CheckScaling(const DetectorConfig& config) {
   }
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -6,7 +6,7 @@
 #include "engine/config/detector.h"
 #include "engine/perception/vision/onnx_outline.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 enum class ChannelPlace { kFirst, kLast };  // 1 x 3 x height x width, 1 x height x width x 3
 
@@ -35,4 +35,4 @@ int LongSides(const Sides& sides) {
   return found;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

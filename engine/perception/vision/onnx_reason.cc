@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 // "Conv@ai.onnx" as "Conv", "Op@com.mine" as "com.mine.Op".
@@ -70,4 +70,4 @@ std::string ReasonOf(std::string_view opencv_message) {
                      node.empty() ? "" : fmt::format(" (node '{}')", node), Bare(opencv_message));
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

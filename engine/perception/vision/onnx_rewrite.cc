@@ -14,7 +14,7 @@
 #include "engine/perception/vision/onnx_fields.h"
 #include "engine/perception/vision/onnx_mend.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 std::uint64_t Widened(std::uint64_t type) { return type == onnx::kFloat16 ? onnx::kFloat : type; }
@@ -256,4 +256,4 @@ std::string ForOpenCv(std::string_view bytes, const OnnxOutline& outline, const 
   return Rewriter(outline, reading, name).Model(bytes);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -11,11 +11,11 @@
 #include "engine/perception/vision/onnx_outline.h"
 #include "engine/perception/vision/onnx_reading.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 // `bytes` have passed CheckOnnx, `outline` and `reading` are theirs. Throws UserError that begins with `name` for steps
 // that cannot be run: graphs within graphs.
 std::string ForOpenCv(std::string_view bytes, const OnnxOutline& outline, const OnnxReading& reading,
                       const std::string& name);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

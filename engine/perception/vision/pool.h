@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::perception {
 
 template <class T>
 class Pool {
@@ -38,4 +38,4 @@ class Pool {
   std::vector<std::unique_ptr<T>> free_;
 };
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -1,6 +1,6 @@
 #include "engine/perception/vision/requantize.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 
 void RequantizeRow(const Requantization& r, const std::int32_t* __restrict sums,
                    std::uint8_t* __restrict next) {
@@ -27,4 +27,4 @@ float Dequantized(const Requantization& r, std::int32_t sum) {
   return static_cast<float>(sum - r.zero_point_sums.front()) * r.scale + r.biases.front();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

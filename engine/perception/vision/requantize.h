@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::perception {
 
 struct Requantization {
   float scale = 0.0f;        // input_scale weight_scale of the layer
@@ -26,4 +26,4 @@ void RequantizeRow(const Requantization& r, const std::int32_t* sums, std::uint8
 // The real value of a single-channel layer's sum.
 float Dequantized(const Requantization& r, std::int32_t sum);
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

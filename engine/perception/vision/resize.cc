@@ -4,7 +4,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr int kMaxSide_px = 20000;
@@ -59,4 +59,4 @@ FrameStack Resized(const FrameStack& frames, int width_px, int height_px) {
   return result;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

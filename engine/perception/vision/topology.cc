@@ -4,7 +4,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr int kMaxSide_px = 4096;
@@ -128,4 +128,4 @@ Topology FullSizeTopology() {
           .dense = {1024, 1}};
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

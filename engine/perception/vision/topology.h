@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace ed3r {
+namespace ed3r::perception {
 
 struct ConvolutionDesign {
   int channels;  // out
@@ -58,4 +58,4 @@ Topology CompactTopology();
 // totals, not the widths; these are ours.
 Topology FullSizeTopology();
 
-}  // namespace ed3r
+}  // namespace ed3r::perception

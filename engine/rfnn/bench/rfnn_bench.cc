@@ -19,7 +19,7 @@
 #include "engine/rfnn/trainer.h"
 #include "kernels/rfnn.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -47,7 +47,7 @@ double MedianUs(int rounds, int calls, Call call) {
 ModelData DrawnModel(const NetworkDesign& design) {
   Stream stream(1, 0, Purpose::kTraining);
   ModelData data;
-  for (std::size_t i = ParameterCount(ShapeOf(design)); i > 0; --i)
+  for (std::size_t i = kernels::ParameterCount(ShapeOf(design)); i > 0; --i)
     data.weights.push_back(static_cast<float>(0.1 * stream.Normal()));
   data.scaling.input_mean.assign(static_cast<std::size_t>(design.inputs()), 3.0);
   data.scaling.input_sd.assign(static_cast<std::size_t>(design.inputs()), 2.0);
@@ -63,10 +63,10 @@ void Decide(const NetworkDesign& design, int n, int calls) {
   float_state.assign(state.begin(), state.end());
   for (int i = 0; i < n * design.actions(); ++i) actions.push_back(static_cast<float>(stream.Uniform(-1, 7)));
 
-  const DenseShape shape = ShapeOf(design);
-  AlignedFloats packed(PackedFloats(shape)), scratch(RfnnWorkspaceFloats(shape));
-  PackParameters(shape, model.data().weights.data(), packed.data());
-  RfnnDecision bare;
+  const kernels::DenseShape shape = ShapeOf(design);
+  kernels::AlignedFloats packed(kernels::PackedFloats(shape)), scratch(kernels::RfnnWorkspaceFloats(shape));
+  kernels::PackParameters(shape, model.data().weights.data(), packed.data());
+  kernels::RfnnDecision bare;
   bare.state = float_state.data();
   bare.n_state = design.states;
   bare.actions = actions.data();
@@ -74,11 +74,11 @@ void Decide(const NetworkDesign& design, int n, int calls) {
   Model::Workspace workspace;
   double sink = 0.0;
   const double kernel_us = MedianUs(41, calls, [&] {
-    sink += RfnnArgmax({shape, packed.data()}, bare, scratch.data()).value;
+    sink += kernels::RfnnArgmax({shape, packed.data()}, bare, scratch.data()).value;
   });
   const double model_us = MedianUs(41, calls, [&] { sink += model.Best(state, actions, workspace).reward; });
   fmt::print("{:5} {:4} actions  {}  kernel {:8.3f} us  Model::Best {:8.3f} us  ({:+.1f} %) [{:.0f}]\n",
-             design.name, n, SimdLevelName(ActiveSimdLevel()), kernel_us, model_us,
+             design.name, n, kernels::SimdLevelName(kernels::ActiveSimdLevel()), kernel_us, model_us,
              100.0 * (model_us / kernel_us - 1.0), sink);
 }
 
@@ -108,7 +108,7 @@ void TrainOne(const NetworkDesign& design, const DataSet& data, double rate, int
   const double cpu = CpuSeconds() - cpu_start;
   const TrainingReport& report = model->data().report;
   fmt::print("{} network, rate {}, {}: {} epochs ({}), best {}, {:.1f} s, CPU {:.1f} s, {:.1f} ms an epoch\n",
-             design.name, rate, SimdLevelName(ActiveSimdLevel()), report.curve.size(),
+             design.name, rate, kernels::SimdLevelName(kernels::ActiveSimdLevel()), report.curve.size(),
              report.stopped_early ? "patience" : "all", report.best_epoch, Seconds(start), cpu,
              1e3 * cpu / static_cast<double>(report.curve.size()));
   PrintScore("train", report.train);
@@ -140,6 +140,6 @@ int Main(std::vector<std::string> args) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::rfnn
 
-int main(int argc, char** argv) { return ed3r::Main({argv + 1, argv + argc}); }
+int main(int argc, char** argv) { return ed3r::rfnn::Main({argv + 1, argv + argc}); }

@@ -8,7 +8,7 @@
 #include "engine/core/random.h"
 #include "engine/rfnn/features.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -103,4 +103,4 @@ SyntheticWarmUp MakeSyntheticWarmUp(int missions, int timesteps, std::uint64_t s
   return log;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

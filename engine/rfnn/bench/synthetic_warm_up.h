@@ -6,7 +6,7 @@
 
 #include "engine/rfnn/data_set.h"
 
-namespace ed3r {
+namespace ed3r::rfnn {
 
 // The same timesteps as rows of each network.
 struct SyntheticWarmUp {
@@ -17,4 +17,4 @@ struct SyntheticWarmUp {
 // `missions` walks of `timesteps` each past one of six fires; which one, no input tells.
 SyntheticWarmUp MakeSyntheticWarmUp(int missions, int timesteps, std::uint64_t seed);
 
-}  // namespace ed3r
+}  // namespace ed3r::rfnn

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-namespace ed3r {
+namespace ed3r::robot {
 
 Rotorcraft MakeRotorcraft(const RobotConfig& robot) {
   return {.mass_kg = robot.mass_kg,
@@ -25,4 +25,4 @@ double PaperHoverW(const Rotorcraft& craft, const Air& air, HoverForm form) {
          std::sqrt(g * g * g / (2.0 * craft.propellers) * air.density_kgm3 * craft.propeller_area_m2);
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

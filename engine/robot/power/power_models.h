@@ -13,7 +13,7 @@
 #include "engine/config/energy.h"
 #include "engine/config/robot.h"
 
-namespace ed3r {
+namespace ed3r::robot {
 
 // The body as the formulas see it.
 struct Rotorcraft {
@@ -149,7 +149,8 @@ template <class T>
 T InducedVelocityMps(const T& axial, const T& across, const T& hover_squared) {
   using power_detail::ValueOf;
   constexpr int kSteps = 4;
-  const double a = ValueOf(axial), p = ValueOf(across), h2 = ValueOf(hover_squared);
+  const double a = robot::power_detail::ValueOf(axial), p = robot::power_detail::ValueOf(across),
+               h2 = robot::power_detail::ValueOf(hover_squared);
   double v = -0.5 * a + std::sqrt(0.25 * a * a + h2);
   if (v * p > h2) v = h2 / p;
   for (int step = 0; step < kSteps; ++step) v = power_detail::InducedStep(v, a, p, h2);
@@ -196,4 +197,4 @@ T MomentumPowerW(const MomentumParameters<T>& parameters, double mass_kg, double
   return MomentumPowersW(parameters, mass_kg, horizontal_mps, climb_mps, air, disc_area_m2).TotalW();
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::robot

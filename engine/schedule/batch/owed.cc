@@ -13,28 +13,28 @@
 #include "engine/store/schema.h"
 #include "engine/store/shards.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 namespace fs = std::filesystem;
 
 bool HoldsResults(const std::string& dir) {
   std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(fs::path(dir) / kResultsFile, error);
+  const std::uintmax_t bytes = fs::file_size(fs::path(dir) / store::kResultsFile, error);
   return !error && bytes > 0;
 }
 
 class Books {
  public:
-  Books(const SweepPlan& plan, const std::string& run_dir, const std::string& cache_dir,
+  Books(const sweep::SweepPlan& plan, const std::string& run_dir, const std::string& cache_dir,
         const HalfWidthFn& half_width)
       : plan_(plan),
-        layout_(LayoutOf(plan)),
+        layout_(store::LayoutOf(plan)),
         run_dir_(run_dir),
         cache_dir_(cache_dir),
         half_width_(half_width) {
     if (!HoldsResults(run_dir)) return;
-    ResultReader reader(run_dir);
+    store::ResultReader reader(run_dir);
     CheckPlan(reader);
     merged_ = reader.Stored();
     has_networks_ = !reader.Networks().uses.empty();
@@ -44,10 +44,10 @@ class Books {
   bool Flights(const BatchStep& step, int number, Owed& owed) const {
     const StageProgress progress = ProgressOf(plan_, step.stage, merged_, run_dir_, half_width_);
     if (progress.open.empty()) return false;
-    const std::vector<RunId> stored = WithShards(step.stage);
+    const std::vector<sweep::RunId> stored = WithShards(step.stage);
     std::set<std::int64_t> tasks;
     const Shard every{};
-    for (const RunId& id : Todo(layout_, StageNumber(step.stage), every, stored)) {
+    for (const sweep::RunId& id : Todo(layout_, StageNumber(step.stage), every, stored)) {
       if (!progress.Asks(id)) continue;
       tasks.insert(TaskOf(ShardOf(layout_.LinearIndex(id), step.tasks), step.tasks));
       ++owed.missions;
@@ -72,7 +72,7 @@ class Books {
   bool Report(int number, Owed& owed) const {
     std::error_code error;
     const auto made = fs::last_write_time(fs::path(run_dir_) / "report" / "index.html", error);
-    if (!error && made >= fs::last_write_time(fs::path(run_dir_) / kResultsFile)) return false;
+    if (!error && made >= fs::last_write_time(fs::path(run_dir_) / store::kResultsFile)) return false;
     owed.step = number;
     return true;
   }
@@ -82,7 +82,7 @@ class Books {
   static std::int64_t TaskOf(std::int64_t shard, std::int64_t tasks) { return shard == 0 ? tasks : shard; }
 
   // The numbers of arms and missions are those of a plan. A plan that has only grown is flown on by its first tasks.
-  void CheckPlan(const ResultReader& reader) const {
+  void CheckPlan(const store::ResultReader& reader) const {
     if (reader.StoredRecipe().plan_text != plan_.CanonicalText())
       throw UserError(fmt::format(
           "{}: holds results of another plan, and what is owed cannot be counted against this one; "
@@ -93,33 +93,33 @@ class Books {
 
   int StageNumber(const std::string& name) const {
     const auto found = std::find_if(plan_.stages.begin(), plan_.stages.end(),
-                                    [&](const Stage& stage) { return stage.name == name; });
+                                    [&](const sweep::Stage& stage) { return stage.name == name; });
     return static_cast<int>(found - plan_.stages.begin());
   }
 
-  std::vector<RunId> WithShards(const std::string& stage) const {
-    std::vector<RunId> stored = merged_;
-    for (const std::string& dir : ShardDirs(run_dir_, stage)) {
-      ResultReader reader(dir);
+  std::vector<sweep::RunId> WithShards(const std::string& stage) const {
+    std::vector<sweep::RunId> stored = merged_;
+    for (const std::string& dir : store::ShardDirs(run_dir_, stage)) {
+      store::ResultReader reader(dir);
       CheckPlan(reader);
-      const std::vector<RunId> of_task = reader.Stored();
+      const std::vector<sweep::RunId> of_task = reader.Stored();
       stored.insert(stored.end(), of_task.begin(), of_task.end());
     }
     std::sort(stored.begin(), stored.end());
     return stored;
   }
 
-  const SweepPlan& plan_;
-  const RunLayout layout_;
+  const sweep::SweepPlan& plan_;
+  const store::RunLayout layout_;
   const std::string &run_dir_, &cache_dir_;
   const HalfWidthFn& half_width_;
-  std::vector<RunId> merged_;
+  std::vector<sweep::RunId> merged_;
   bool has_networks_ = false;
 };
 
 }  // namespace
 
-Owed WhatIsOwed(const SweepPlan& plan, const std::vector<BatchStep>& steps, const std::string& run_dir,
+Owed WhatIsOwed(const sweep::SweepPlan& plan, const std::vector<BatchStep>& steps, const std::string& run_dir,
                 const std::string& cache_dir, const HalfWidthFn& half_width) {
   const Books books(plan, run_dir, cache_dir, half_width);
   Owed owed;
@@ -133,4 +133,4 @@ Owed WhatIsOwed(const SweepPlan& plan, const std::vector<BatchStep>& steps, cons
   return owed;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

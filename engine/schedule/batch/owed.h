@@ -8,7 +8,7 @@
 #include "engine/schedule/batch/steps.h"
 #include "engine/schedule/progress_of_stage.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 struct Owed {
   int step = 0;                     // from this one on, counted from 1; 0 when nothing is owed
@@ -17,7 +17,7 @@ struct Owed {
 };
 
 // Reads the run, its shards and the cache. A failed mission is owed: its task flies it again.
-Owed WhatIsOwed(const SweepPlan& plan, const std::vector<BatchStep>& steps, const std::string& run_dir,
+Owed WhatIsOwed(const sweep::SweepPlan& plan, const std::vector<BatchStep>& steps, const std::string& run_dir,
                 const std::string& cache_dir, const HalfWidthFn& half_width);
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 bool IsPlain(char c, std::string_view others) {
@@ -34,4 +34,4 @@ std::string ShellWords(const std::vector<std::string>& words) {
 
 bool IsDirectiveWord(std::string_view text) { return AllPlain(text, "._:,=@%+/[]-"); }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

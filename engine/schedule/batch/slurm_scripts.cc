@@ -7,7 +7,7 @@
 
 #include "engine/schedule/batch/shell.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 constexpr int kNotice_s = 120;   // between USR1 and the time limit
@@ -221,4 +221,4 @@ std::vector<BatchFile> SlurmScripts(const std::string& sweep_name, const std::ve
   return files;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -14,7 +14,7 @@
 
 #include "engine/schedule/batch/steps.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 // The line of common.sh that says how many shards a stage's flights are divided into stands behind this.
 inline constexpr char kShardsLine[] = "\ntasks=";
@@ -39,4 +39,4 @@ struct BatchFile {
 std::vector<BatchFile> SlurmScripts(const std::string& sweep_name, const std::vector<BatchStep>& steps,
                                     const SlurmOptions& options);
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

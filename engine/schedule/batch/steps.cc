@@ -7,18 +7,18 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
-bool BuiltUpon(const SweepPlan& plan, const std::string& name) {
-  return std::any_of(plan.stages.begin(), plan.stages.end(), [&](const Stage& stage) {
+bool BuiltUpon(const sweep::SweepPlan& plan, const std::string& name) {
+  return std::any_of(plan.stages.begin(), plan.stages.end(), [&](const sweep::Stage& stage) {
     return std::find(stage.after.begin(), stage.after.end(), name) != stage.after.end();
   });
 }
 
 }  // namespace
 
-std::vector<BatchStep> StepsOf(const SweepPlan& plan, std::int64_t shards, std::int64_t networks,
+std::vector<BatchStep> StepsOf(const sweep::SweepPlan& plan, std::int64_t shards, std::int64_t networks,
                                const std::vector<double>& expected_core_s) {
   ED3R_CHECK(shards > 0 && expected_core_s.size() == plan.stages.size(), fmt::format("{} shards", shards));
   std::vector<BatchStep> steps;
@@ -31,8 +31,8 @@ std::vector<BatchStep> StepsOf(const SweepPlan& plan, std::int64_t shards, std::
     return step;
   };
   for (std::size_t i = 0; i < plan.stages.size(); ++i) {
-    const Stage& stage = plan.stages[i];
-    if (stage.kind == StageKind::kTrain) {
+    const sweep::Stage& stage = plan.stages[i];
+    if (stage.kind == sweep::StageKind::kTrain) {
       if (networks > 0) add(BatchStep::Kind::kTrain, stage.name, stage.name).tasks = networks;
       add(BatchStep::Kind::kCollect, stage.name, stage.name + "-collect");
       continue;
@@ -75,4 +75,4 @@ std::vector<std::string> ArraysOf(const std::vector<std::int64_t>& tasks, std::i
   return arrays;
 }
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

@@ -7,7 +7,7 @@
 
 #include "engine/sweep/plan.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 
 struct BatchStep {
   enum class Kind {
@@ -28,7 +28,7 @@ struct BatchStep {
 
 // Steps in the order in which they run, each after the one before it, numbered from 1 in their names.
 // `networks`: how many the training stages train (CountNetworks). `expected_core_s(stage)`: what a stage's flights take.
-std::vector<BatchStep> StepsOf(const SweepPlan& plan, std::int64_t shards, std::int64_t networks,
+std::vector<BatchStep> StepsOf(const sweep::SweepPlan& plan, std::int64_t shards, std::int64_t networks,
                                const std::vector<double>& expected_core_s);
 
 // "2,5-7" for the tasks 2, 5, 6 and 7 (ascending).
@@ -38,4 +38,4 @@ std::string TaskList(const std::vector<std::int64_t>& tasks);
 // is added to the index.
 std::vector<std::string> ArraysOf(const std::vector<std::int64_t>& tasks, std::int64_t limit);
 
-}  // namespace ed3r
+}  // namespace ed3r::schedule

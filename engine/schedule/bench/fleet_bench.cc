@@ -25,7 +25,7 @@
 #include "engine/schedule/sweep_runner.h"
 #include "engine/sweep/sweep_file.h"
 
-namespace ed3r {
+namespace ed3r::schedule {
 namespace {
 
 constexpr std::size_t kManyRows = 1024;
@@ -42,23 +42,23 @@ double Seconds(std::chrono::steady_clock::time_point since) {
 // Of all threads of this process.
 double CpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-MissionTask TaskFor(const Scene& scene, const Config& config, std::int64_t mission) {
-  MissionTask task{.scene = scene, .config = config};
+mission::MissionTask TaskFor(const world::Scene& scene, const Config& config, std::int64_t mission) {
+  mission::MissionTask task{.scene = scene, .config = config};
   task.seed = 1;
   task.scenario = static_cast<std::uint32_t>(mission);
   task.mission = static_cast<int>(mission);
   return task;
 }
 
-Flown ClosedLoop(const Scene& scene, const Config& config, std::int64_t missions, int threads) {
-  std::vector<MissionRecord> records(static_cast<std::size_t>(missions));
+Flown ClosedLoop(const world::Scene& scene, const Config& config, std::int64_t missions, int threads) {
+  std::vector<mission::MissionRecord> records(static_cast<std::size_t>(missions));
   const double cpu_s = CpuSeconds();
   const auto begin = std::chrono::steady_clock::now();
   ParallelFor(threads, missions, [&](std::int64_t i) {
-    records[static_cast<std::size_t>(i)] = FlyMission(TaskFor(scene, config, i));
+    records[static_cast<std::size_t>(i)] = mission::FlyMission(TaskFor(scene, config, i));
   });
   Flown flown{.wall_s = Seconds(begin), .cpu_s = CpuSeconds() - cpu_s};
-  for (const MissionRecord& record : records) {
+  for (const mission::MissionRecord& record : records) {
     flown.simulated_s += record.duration_s;
     flown.timesteps += record.timesteps;
   }
@@ -66,30 +66,31 @@ Flown ClosedLoop(const Scene& scene, const Config& config, std::int64_t missions
 }
 
 // The view that a row of the fleet shows.
-RcView ViewOf(const float* seen) {
-  RcView view;
-  view.pose = {{seen[kRcX], seen[kRcY], seen[kRcZ]}, seen[kRcYaw], seen[kRcTilt]};
-  view.previous_scs = seen[kRcPreviousScs];
+agents::RcView ViewOf(const float* seen) {
+  agents::RcView view;
+  view.pose = {
+      {seen[rfnn::kRcX], seen[rfnn::kRcY], seen[rfnn::kRcZ]}, seen[rfnn::kRcYaw], seen[rfnn::kRcTilt]};
+  view.previous_scs = seen[rfnn::kRcPreviousScs];
   return view;
 }
 
-Flown Stepped(const Scene& scene, const Config& config, std::int64_t missions, int threads,
+Flown Stepped(const world::Scene& scene, const Config& config, std::int64_t missions, int threads,
               std::size_t rows) {
-  std::vector<std::unique_ptr<LookLevel>> rules(rows);
-  const auto task = [&](std::size_t row, std::int64_t nth) -> std::optional<MissionTask> {
+  std::vector<std::unique_ptr<agents::LookLevel>> rules(rows);
+  const auto task = [&](std::size_t row, std::int64_t nth) -> std::optional<mission::MissionTask> {
     const auto mission = static_cast<std::int64_t>(row) + nth * static_cast<std::int64_t>(rows);
     if (mission >= missions) return std::nullopt;
     return TaskFor(scene, config, mission);
   };
-  const AgentContext context{config, FindStrategy("look-level"), {}, scene.SizeM()};
+  const agents::AgentContext context{config, agents::FindStrategy("look-level"), {}, scene.SizeM()};
   Fleet fleet(rows, task, threads, Autoreset::kSameStep);
   Flown flown;
-  fleet.OnRecord([&](const MissionTask&, std::optional<MissionRecord> record) {
+  fleet.OnRecord([&](const mission::MissionTask&, std::optional<mission::MissionRecord> record) {
     flown.simulated_s += record->duration_s;
     flown.timesteps += record->timesteps;
   });
   std::vector<float> commands(rows * kCommandValues);
-  const std::vector<std::int64_t> executions(rows, static_cast<std::int64_t>(Execution::kQuantized));
+  const std::vector<std::int64_t> executions(rows, static_cast<std::int64_t>(agents::Execution::kQuantized));
   const double cpu_s = CpuSeconds();
   const auto begin = std::chrono::steady_clock::now();
   fleet.Reset();
@@ -97,12 +98,12 @@ Flown Stepped(const Scene& scene, const Config& config, std::int64_t missions, i
   while (std::any_of(now.mission.begin(), now.mission.end(), [](std::int64_t m) { return m >= 0; })) {
     for (std::size_t row = 0; row < rows; ++row) {
       if (now.mission[row] < 0 || now.hovers[row] != 0) continue;
-      if (now.timestep[row] == 1) rules[row] = std::make_unique<LookLevel>(context);
-      const RcView view = ViewOf(now.controller.data() + row * kRcStates);
+      if (now.timestep[row] == 1) rules[row] = std::make_unique<agents::LookLevel>(context);
+      const agents::RcView view = ViewOf(now.controller.data() + row * rfnn::kRcStates);
       const float* ranges = now.ranges.data() + row * 3;
-      const MotionCommand command =
+      const robot::MotionCommand command =
           rules[row]->Choose({.view = view, .ranges = {ranges[0], ranges[1], ranges[2]}}).command;
-      const RcAction action = ActionOf(command);
+      const agents::RcAction action = agents::ActionOf(command);
       std::copy(action.begin(), action.end(),
                 commands.begin() + static_cast<std::ptrdiff_t>(row * kCommandValues));
     }
@@ -116,16 +117,16 @@ Flown Stepped(const Scene& scene, const Config& config, std::int64_t missions, i
 
 void Bench(const std::string& sweep, std::int64_t missions, int threads,
            const std::vector<std::size_t>& all_rows) {
-  SweepPlan plan = LoadSweep(sweep);
-  Stage& stage = plan.stages.front();
+  sweep::SweepPlan plan = sweep::LoadSweep(sweep);
+  sweep::Stage& stage = plan.stages.front();
   stage.arms.resize(1);
   stage.arms.front().config.mission.strategy = "look-level";
   plan.stages.resize(1);
   const Inputs inputs(plan);
   const Config closed = stage.arms.front().config;
   Config outside = closed;
-  outside.mission.strategy = kOutsideStrategy;
-  const Scene& scene = inputs.SceneOf(closed);
+  outside.mission.strategy = agents::kOutsideStrategy;
+  const world::Scene& scene = inputs.SceneOf(closed);
   const auto tell = [&](const std::string& what, const Flown& flown, const Flown& loop) {
     const double decisions = 2.0 * static_cast<double>(flown.timesteps);
     fmt::print(
@@ -155,7 +156,7 @@ void Bench(const std::string& sweep, std::int64_t missions, int threads,
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::schedule
 
 int main(int argc, char** argv) {
   if (argc < 5) {
@@ -164,6 +165,6 @@ int main(int argc, char** argv) {
   }
   std::vector<std::size_t> rows;
   for (int i = 4; i < argc; ++i) rows.push_back(static_cast<std::size_t>(std::atoll(argv[i])));
-  ed3r::Bench(argv[1], std::atoll(argv[2]), std::atoi(argv[3]), rows);
+  ed3r::schedule::Bench(argv[1], std::atoll(argv[2]), std::atoi(argv[3]), rows);
   return 0;
 }

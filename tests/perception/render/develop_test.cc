@@ -8,7 +8,7 @@
 
 #include "engine/core/check.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr PixelGrid kGrid{128, 96, 4};
@@ -102,4 +102,4 @@ TEST(Develop, RefusesAShiftBeyondTheMarginAndAWrongSize) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -10,18 +10,18 @@
 #include "engine/perception/render/renderer.h"
 #include "tests/perception/render/small_view.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 class Frames : public testing::Test {
  protected:
   static constexpr std::uint64_t kSeed = 5;
-  std::shared_ptr<const Scene> scene_ = FireScene(
+  std::shared_ptr<const world::Scene> scene_ = FireScene(
       [](double x_m, double y_m) { return 8.0 + 6.0 * std::sin(0.03 * x_m) * std::cos(0.04 * y_m); },
       {300, 200});
   std::shared_ptr<const TraceScene> traced_ = std::make_shared<TraceScene>(*scene_);
   PerceptionConfig perception_;
-  Pose pose_ = LookFrom(230, 190, 30, 5, 10);
+  robot::Pose pose_ = LookFrom(230, 190, 30, 5, 10);
 
   Renderer MakeRenderer(std::uint32_t scenario = 3, int site = 0) const {
     return Renderer(traced_, site, perception_, SensingConfig(), kSeed, scenario);
@@ -122,4 +122,4 @@ TEST_F(Frames, PicturesAreRefusedWhereTheyCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

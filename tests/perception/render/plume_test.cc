@@ -7,10 +7,10 @@
 #include "engine/perception/view.h"
 #include "tests/perception/render/small_view.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
-GroundTruth TruthFrom(const Scene& scene, const Pose& pose, int site = 0) {
+GroundTruth TruthFrom(const world::Scene& scene, const robot::Pose& pose, int site = 0) {
   const Renderer renderer(std::make_shared<TraceScene>(scene), site, ClearView(), SensingConfig(), 1, 1);
   const int first[] = {0};
   return renderer.Sense(pose, 1, first, {}).truth;
@@ -53,7 +53,7 @@ TEST(Plume, AHalfHighRidgeHidesTheFlameAndLeavesTheSmoke) {
 
 TEST(Plume, TheFlameLandsWhereThePinholeEquationSays) {
   const auto scene = FireScene([](double, double) { return 0.0; }, {300, 230});
-  const Pose pose = LookFrom(200, 200, 30, 5.0, 10.0);
+  const robot::Pose pose = LookFrom(200, 200, 30, 5.0, 10.0);
   const SensingConfig sensing;
   const PixelGrid grid{96, 54, 2};
   const TraceScene traced(*scene);
@@ -108,4 +108,4 @@ TEST(Plume, DistanceIsToTheFlame) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

@@ -8,7 +8,7 @@
 #include "engine/core/check.h"
 #include "tests/perception/render/small_view.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr PixelGrid kGrid{96, 54, 2};
@@ -20,7 +20,7 @@ std::size_t PixelAt(const PixelGrid& grid, double x_px, double y_px) {
 }
 
 // Where the pinhole equation puts a point: focal length in pixels times x/z, from the picture's middle.
-Eigen::Vector2d Pinhole(const Pose& pose, const SensingConfig& sensing, const PixelGrid& grid,
+Eigen::Vector2d Pinhole(const robot::Pose& pose, const SensingConfig& sensing, const PixelGrid& grid,
                         const Eigen::Vector3d& point_m) {
   const double focal_px = 0.5 * grid.width_px / std::tan(0.5 * sensing.camera_hfov_deg * kPi / 180.0);
   const Eigen::Vector3d forward(std::cos(pose.yaw_rad) * std::cos(pose.tilt_rad),
@@ -44,7 +44,7 @@ Prop House(float x_m, float y_m) {
 TEST(Trace, ABoxLandsWhereThePinholeEquationSays) {
   const auto scene = FireScene([](double, double) { return 0.0; }, {380, 380});
   const TraceScene traced(*scene);
-  const Pose pose = LookFrom(100, 200, 20, 7.0, 12.0);
+  const robot::Pose pose = LookFrom(100, 200, 20, 7.0, 12.0);
   const SensingConfig sensing;
   const Prop box = House(150.0f, 200.0f);
   const SensingTrace trace = traced.Trace(pose, sensing, kGrid, Noon(), std::span(&box, 1));
@@ -66,7 +66,7 @@ TEST(Trace, ABoxLandsWhereThePinholeEquationSays) {
 TEST(Trace, DistancesAndNormalsAreThoseOfTheGround) {
   const auto scene = FireScene([](double x_m, double) { return 0.25 * x_m; }, {380, 380});
   const TraceScene traced(*scene);
-  const Pose pose = LookFrom(200, 200, 110, 0.0, 90.0);
+  const robot::Pose pose = LookFrom(200, 200, 110, 0.0, 90.0);
   const SensingTrace trace = traced.Trace(pose, SensingConfig(), kGrid, Noon(), {});
   const Eigen::Vector3f up = Eigen::Vector3f(-0.25f, 0.0f, 1.0f).normalized();
   for (std::size_t i = 0; i < kGrid.Pixels(); ++i) {
@@ -78,7 +78,7 @@ TEST(Trace, DistancesAndNormalsAreThoseOfTheGround) {
 }
 
 TEST(Trace, PacketsMeetWhatSingleRaysMeet) {
-  std::vector<Tree> trees;
+  std::vector<world::Tree> trees;
   for (int i = 0; i < 60; ++i)
     trees.push_back({.x_m = 120.0 + 13.0 * (i % 10),
                      .y_m = 150.0 + 17.0 * (i / 10),
@@ -88,7 +88,7 @@ TEST(Trace, PacketsMeetWhatSingleRaysMeet) {
                      .crown_radius_m = 2.5,
                      .crown_depth_m = 8});
   const auto scene = FireScene([](double, double) { return 0.0; }, {380, 380}, trees);
-  const Pose pose = LookFrom(90, 190, 18, 3, 8);
+  const robot::Pose pose = LookFrom(90, 190, 18, 3, 8);
   const Ambience noon = Noon();
   const SensingTrace trace = TraceScene(*scene).Trace(pose, SensingConfig(), kGrid, noon, {});
   int met = 0;
@@ -110,17 +110,17 @@ TEST(Trace, PacketsMeetWhatSingleRaysMeet) {
 }
 
 TEST(Trace, ATreeHidesTheGroundAndIsKnownByItsIndex) {
-  const Tree tree{.x_m = 150,
-                  .y_m = 200,
-                  .ground_m = 0,
-                  .height_m = 20,
-                  .trunk_radius_m = 0.4,
-                  .crown_radius_m = 3,
-                  .crown_depth_m = 12};
-  Tree other = tree;
+  const world::Tree tree{.x_m = 150,
+                         .y_m = 200,
+                         .ground_m = 0,
+                         .height_m = 20,
+                         .trunk_radius_m = 0.4,
+                         .crown_radius_m = 3,
+                         .crown_depth_m = 12};
+  world::Tree other = tree;
   other.x_m = 390;
   const auto scene = FireScene([](double, double) { return 0.0; }, {380, 380}, {other, tree});
-  const Pose pose = LookFrom(120, 200, 14, 0.0, 0.0);
+  const robot::Pose pose = LookFrom(120, 200, 14, 0.0, 0.0);
   const SensingTrace trace = TraceScene(*scene).Trace(pose, SensingConfig(), kGrid, Noon(), {});
   const SensingConfig sensing;
   const auto at = [&](double z_m) {
@@ -135,17 +135,17 @@ TEST(Trace, ATreeHidesTheGroundAndIsKnownByItsIndex) {
 }
 
 TEST(Trace, TheShadowOfATreeFallsAwayFromTheSun) {
-  const Tree tree{.x_m = 200,
-                  .y_m = 200,
-                  .ground_m = 0,
-                  .height_m = 20,
-                  .trunk_radius_m = 0.4,
-                  .crown_radius_m = 4,
-                  .crown_depth_m = 12};
+  const world::Tree tree{.x_m = 200,
+                         .y_m = 200,
+                         .ground_m = 0,
+                         .height_m = 20,
+                         .trunk_radius_m = 0.4,
+                         .crown_radius_m = 4,
+                         .crown_depth_m = 12};
   const auto scene = FireScene([](double, double) { return 0.0; }, {380, 380}, {tree});
   Ambience ambience = Noon();
   ambience.to_sun = Eigen::Vector3f(1.0f, 0.0f, 1.0f).normalized();
-  const Pose pose = LookFrom(200, 200, 90, 0.0, 90.0);
+  const robot::Pose pose = LookFrom(200, 200, 90, 0.0, 90.0);
   const SensingConfig sensing;
   const SensingTrace trace = TraceScene(*scene).Trace(pose, sensing, kGrid, ambience, {});
   // The crown's middle, 13 m up, shades the ground 13 m west of the tree.
@@ -163,4 +163,4 @@ TEST(Trace, RefusesAnEmptyPicture) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

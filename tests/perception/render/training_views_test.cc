@@ -7,7 +7,7 @@
 #include "engine/perception/view.h"
 #include "tests/perception/render/small_view.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 TEST(DataSet, HalfOfTheViewsShowFireAndAllArePosesOfARobot) {
@@ -40,7 +40,7 @@ TEST(DataSet, NamesTheDistractorsInTheFrame) {
   PerceptionConfig perception;
   perception.distractors_per_km2 = 2000.0;
   const Renderer many(traced, 0, perception, SensingConfig(), 1, 1);
-  const Pose pose = LookFrom(100, 200, 60, 0, 40);
+  const robot::Pose pose = LookFrom(100, 200, 60, 0, 40);
   EXPECT_EQ(PropsInView(many, *scene, pose, SensingConfig()), "roof;vehicle;rock;autumn;fog");
   perception.distractors_per_km2 = 0.0;
   const Renderer none(traced, 0, perception, SensingConfig(), 1, 1);
@@ -48,4 +48,4 @@ TEST(DataSet, NamesTheDistractorsInTheFrame) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception

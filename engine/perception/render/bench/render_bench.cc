@@ -21,7 +21,7 @@
 #include "engine/perception/render/shade.h"
 #include "engine/perception/render/training_views.h"
 
-namespace ed3r {
+namespace ed3r::perception {
 namespace {
 
 constexpr std::uint64_t kSeed = 7;
@@ -50,7 +50,7 @@ void Measure(Part& part, Call call) {
 }
 
 void Run(const std::string& world, int views, PictureSize size) {
-  const std::shared_ptr<const Scene> scene = Scene::Load(world);
+  const std::shared_ptr<const world::Scene> scene = world::Scene::Load(world);
   const std::vector<std::shared_ptr<const TraceScene>> scenes = {std::make_shared<TraceScene>(*scene)};
   const Config config;
   const PixelGrid grid{size.width_px, size.height_px, 2};
@@ -64,7 +64,7 @@ void Run(const std::string& world, int views, PictureSize size) {
     const auto number = static_cast<std::uint32_t>(view);
     const ViewPlan plan = PlanView(scenes, config, kSeed, number);
     const Renderer renderer(scenes[0], plan.site, config.perception, config.sensing, kSeed, number);
-    const FireSite& site = scene->Sites()[static_cast<std::size_t>(plan.site)];
+    const world::FireSite& site = scene->Sites()[static_cast<std::size_t>(plan.site)];
     SensingTrace trace;
     StillPicture still;
     Measure(parts[0], [&] {
@@ -75,7 +75,7 @@ void Run(const std::string& world, int views, PictureSize size) {
     Measure(parts[3], [&] { renderer.Sense(plan.pose, 1, numbers, size); });
   }
   fmt::print("{}, {} views, {} x {} px, rays in {}\n", scene->Name(), views, size.width_px, size.height_px,
-             RayInstructionSet());
+             world::RayInstructionSet());
   for (Part& part : parts) {
     std::sort(part.ms.begin(), part.ms.end());
     const double mean =
@@ -86,17 +86,17 @@ void Run(const std::string& world, int views, PictureSize size) {
 }
 
 }  // namespace
-}  // namespace ed3r
+}  // namespace ed3r::perception
 
 int main(int argc, char** argv) {
   if (argc < 2) {
     fmt::print(stderr, "usage: render_bench WORLD.yaml [VIEWS [WxH]]\n");
     return 2;
   }
-  ed3r::PictureSize size;
+  ed3r::perception::PictureSize size;
   if (argc > 3 && std::sscanf(argv[3], "%dx%d", &size.width_px, &size.height_px) != 2) return 2;
   try {
-    ed3r::Run(argv[1], argc > 2 ? std::max(1, std::atoi(argv[2])) : 200, size);
+    ed3r::perception::Run(argv[1], argc > 2 ? std::max(1, std::atoi(argv[2])) : 200, size);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "render_bench: {}\n", error.what());
