@@ -28,7 +28,7 @@ struct MissionConfig {
   StartYaw start_yaw = StartYaw::kDrawn;
   double start_yaw_deg = 0.0;
   int max_timesteps = 2000;
-  double physics_hz = 240.0;
+  double physics_hz = 120.0;
 
   template <class Self, class Visitor>
   static void Describe(Self& self, Visitor&& visit) {

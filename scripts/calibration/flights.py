@@ -15,6 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PROGRAM = pathlib.Path(os.environ.get("ED3R", ROOT / "build/release/ed3r"))
 RIDGES = ROOT / "sweeps/worlds/ridges.yaml"
 CHUNK = 20  # points of one sweep: their worlds are in memory together
+PHYSICS_HZ = 240  # what record.csv was flown with; another step of the physics flies other missions
 LONGEST_SHARE = 0.15
 
 
@@ -25,7 +26,7 @@ def world_is_there(file):
 
 def sweep_text(name, seed, worlds, points, missions, warmups):
     lines = ["# Which worlds give the paper's random walk?   (history matching)", f"name: {name}", f"seed: {seed}",
-             "set: {energy.move_time: nominal}", "stages:", "  - name: rbs", f"    missions: {missions}",
+             f"set: {{energy.move_time: nominal, mission.physics_hz: {PHYSICS_HZ}}}", "stages:", "  - name: rbs", f"    missions: {missions}",
              "    set: {strategy: rbs}", "    sweep:", "      list:"]
     for label, world, point in zip(worlds, worlds.values(), points):
         settings = ", ".join(f"{key}: {value}" for key, value in settings_of(point).items())
