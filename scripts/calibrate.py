@@ -6,8 +6,8 @@
   freeze    keeps the worlds that are left: sweeps/calibration/, sweeps/worlds/, sweeps/matched.yaml, results/calibration/
   check     whether the record follows from itself and from this code: every wave's choice of points, and a few of its flights
             (15 minutes on two cores instead of three hours)
-  predict   from a report of sweeps/matched.yaml (--report DIR): in how many worlds ED3R is better, what that hangs on, and the
-            second calibration
+  predict   from a report of sweeps/matched.yaml (--report DIR, --run DIR): in how many worlds ED3R is better, what that hangs on,
+            and the second calibration
   fresh     RBS in a run of other seeds (--run DIR: of sweeps/rbs.yaml; --warmup DIR: of sweeps/default_world.yaml) beside the paper's
             twelve quantities
 Without a STEP: waves and freeze. Each continues where it stopped; the same code gives the same record.
@@ -95,7 +95,8 @@ def main():
     parser.add_argument("steps", nargs="*", metavar="STEP", help="waves, freeze, check, predict or fresh; default: waves and freeze")
     parser.add_argument("--report", metavar="DIR", type=pathlib.Path, default=flights.ROOT / "results/matched",
                         help="of what predict reads; default: results/matched")
-    parser.add_argument("--run", metavar="DIR", type=pathlib.Path, default=flights.ROOT / "results/runs/rbs", help="of what fresh reads")
+    parser.add_argument("--run", metavar="DIR", type=pathlib.Path, help="what fresh reads, default results/runs/rbs; or predict, of which the "
+                        "report is, where that has no networks.csv yet")
     parser.add_argument("--warmup", metavar="DIR", type=pathlib.Path, default=flights.ROOT / "results/runs/default_world",
                         help="of what fresh reads the warm-up")
     options = parser.parse_args()
@@ -110,10 +111,10 @@ def main():
         freeze.freeze(search.rows, FOLDER, JUDGING)
     if "predict" in steps:
         from calibration import prediction
-        print(prediction.predict(options.report, FOLDER / "matched.csv"), end="")
+        print(prediction.predict(options.report, FOLDER / "matched.csv", options.run), end="")
     if "fresh" in steps:
         from calibration import fresh
-        print(fresh.table(options.run, options.warmup), end="")
+        print(fresh.table(options.run or flights.ROOT / "results/runs/rbs", options.warmup), end="")
     if "check" in steps:
         from calibration import check
         faults = check.check(search, WAVES, SEED, CHECKED_POINTS)

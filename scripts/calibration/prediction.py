@@ -1,7 +1,8 @@
 """What comes out in the worlds that the random walk leaves, and what that hangs on; and the second calibration.
 
-Read from a report of sweeps/matched.yaml (metrics.csv). Written beside it:
+Read from a report of sweeps/matched.yaml (metrics.csv) and from its run. Written beside it:
 
+  networks.csv   how ED3R-75's missions ended with each network of each world, from the run
   worlds.csv     one line per world: its parameters, and what ED3R-75 did there
   worlds.txt     in how many worlds ED3R-75 beats each other arm; the worlds by what ED3R-75 itself is printed with (second
                  calibration: false positives and depleted batteries, nothing else of it); what each outcome hangs on
@@ -9,10 +10,12 @@ Read from a report of sweeps/matched.yaml (metrics.csv). Written beside it:
 
 import csv
 import json
+import math
+import sqlite3
 import subprocess
 
 import numpy as np
-from scipy.stats import fisher_exact, norm, rankdata
+from scipy.stats import rankdata
 
 from calibration.flights import PROGRAM, ROOT
 from calibration.space import SPACE
@@ -24,6 +27,7 @@ COMPARED = (("total_energy_kj", "energy", False), ("msr_pct", "success", True), 
 # What the paper prints of ED3R-75 and the second calibration uses; of its 850 missions each.
 SECOND = (("fp_pct", 1.41), ("bd_pct", 1.41))
 PAPER_MISSIONS = 850
+NETWORK_COLUMNS = ("world", "network", "missions", "false_positives", "depleted")
 NOT_RULED_OUT = 3.0
 PERMUTATIONS = 5000
 SURE = 0.05
@@ -75,16 +79,45 @@ def surely_better(arms, other, metric, more):
     return mine[2] > theirs[3] if more else mine[3] < theirs[2]
 
 
-def second_implausibility(arms):
-    """The farther of the two rates from the paper's: the chance of Fisher's exact test on the missions of both, as the standard
-    errors that have it."""
-    worst = 0.0
-    for metric, paper in SECOND:
-        pct, n = arms[ARM][metric][:2]
-        ours, printed = round(pct / 100.0 * n), round(paper / 100.0 * PAPER_MISSIONS)
-        chance = fisher_exact([[ours, n - ours], [printed, PAPER_MISSIONS - printed]])[1]
-        worst = max(worst, float(norm.isf(min(chance, 1.0) / 2.0)))
-    return worst
+def networks_of(run):
+    """[(world, network, missions, false positives, depleted batteries)] of ED3R-75 in a run of sweeps/matched.yaml."""
+    with sqlite3.connect(f"file:{run / 'results.sqlite'}?mode=ro", uri=True) as database:
+        return database.execute("SELECT substr(arm, instr(arm, '@') + 1), network, count(*), sum(outcome = 'false-positive'), "
+                                "sum(outcome = 'battery-depleted') FROM named_missions WHERE stage = 'online' AND arm LIKE ? "
+                                "GROUP BY arm, network ORDER BY 1, 2", (ARM + "@%",)).fetchall()
+
+
+def read_networks(file):
+    """{world: [(missions, false positives, depleted batteries) of each network]}"""
+    networks = {}
+    with open(file, newline="") as lines:
+        for row in csv.DictReader(lines):
+            networks.setdefault(row["world"], []).append(tuple(int(row[column]) for column in NETWORK_COLUMNS[2:]))
+    return networks
+
+
+def angle(count, missions):
+    """A rate as Anscombe's angle, whose variance 1 / (4 n + 2) does not hang on the rate."""
+    return math.asin(math.sqrt((count + 0.375) / (missions + 0.75)))
+
+
+def second_implausibilities(networks):
+    """By world, the farther of the two rates from the paper's, in standard errors of all that is uncertain: the missions of both,
+    and that the paper's rate, too, is one network's, trained on one warm-up. How much networks differ is taken to be the same in
+    all worlds, which have too few each to tell."""
+    found = dict.fromkeys(networks, 0.0)
+    for column, (_, paper) in enumerate(SECOND, 1):
+        angles = {world: [angle(row[column], row[0]) for row in rows] for world, rows in networks.items()}
+        sampling = {world: [1.0 / (4.0 * row[0] + 2.0) for row in rows] for world, rows in networks.items()}
+        squares = sum(np.var(values) * len(values) for values in angles.values())
+        freedom = sum(len(values) - 1 for values in angles.values())
+        by_chance = sum(np.mean(values) * (len(values) - 1) for values in sampling.values())
+        luck = max(0.0, (squares - by_chance) / freedom)
+        printed = angle(paper / 100.0 * PAPER_MISSIONS, PAPER_MISSIONS)
+        for world, values in angles.items():
+            variance = luck / len(values) + np.mean(sampling[world]) / len(values) + luck + 1.0 / (4.0 * PAPER_MISSIONS + 2.0)
+            found[world] = max(found[world], abs(float(np.mean(values)) - printed) / math.sqrt(variance))
+    return found
 
 
 def rank_correlations(points, values):
@@ -115,14 +148,15 @@ def share_lines(worlds, left):
     return lines
 
 
-def second_lines(worlds, points):
+def second_lines(worlds, points, second):
     lines = ["Second calibration: false positives and depleted batteries of ED3R-75 as printed (1.41 % each), in standard errors",
-             "beside the random walk's implausibility; both below 3 are left", "",
+             "of the missions and of the luck of a network, the paper's and ours; beside the random walk's implausibility. Both",
+             "below 3 are left", "",
              f"{'':<8}{'random walk':>12}{'second':>8}{'FP %':>8}{'BD %':>8}{'MSR %':>8}{'kJ':>8}{'min':>7}"]
-    order = sorted(worlds, key=lambda world: max(float(points[world]["implausibility"]), second_implausibility(worlds[world])))
+    order = sorted(worlds, key=lambda world: max(float(points[world]["implausibility"]), second[world]))
     for world in order:
         mine = worlds[world][ARM]
-        lines.append(f"{world:<8}{float(points[world]['implausibility']):>12.2f}{second_implausibility(worlds[world]):>8.2f}"
+        lines.append(f"{world:<8}{float(points[world]['implausibility']):>12.2f}{second[world]:>8.2f}"
                      f"{mine['fp_pct'][0]:>8.2f}{mine['bd_pct'][0]:>8.2f}{mine['msr_pct'][0]:>8.1f}"
                      f"{mine['total_energy_kj'][0]:>8.1f}{mine['duration_mean_min'][0]:>7.2f}")
     return lines
@@ -145,7 +179,7 @@ def hangs_on_lines(worlds, points):
     return lines
 
 
-def write_worlds(file, worlds, points):
+def write_worlds(file, worlds, points, second):
     metrics = ("total_energy_kj", "duration_mean_min", "msr_pct", "wer_pct", "fp_pct", "bd_pct", "mscs_pct", "or_pct")
     effects = {world: effects_of(arms) for world, arms in worlds.items()}
     columns = ["world", "implausibility", "second_implausibility", *(parameter.name for parameter in SPACE), *metrics,
@@ -155,14 +189,18 @@ def write_worlds(file, worlds, points):
         writer.writerow(columns)
         for world, arms in worlds.items():
             point = points[world]
-            writer.writerow([world, point["implausibility"], f"{second_implausibility(arms):.4g}",
+            writer.writerow([world, point["implausibility"], f"{second[world]:.4g}",
                              *(point[parameter.name] for parameter in SPACE),
                              *(f"{arms[ARM][metric][0]:.6g}" for metric in metrics),
                              *(f"{value:.4g}" for value in effects[world].values())])
 
 
-def predict(report, matched):
-    """`report`: a folder with metrics.csv; `matched`: matched.csv. Returns the text."""
+def predict(report, matched, run):
+    """`report`: a folder with metrics.csv; `matched`: matched.csv; `run`: what the report is of, or None where the report
+    holds networks.csv already. Returns the text."""
+    if run is not None:
+        with open(report / "networks.csv", "w", newline="") as out:
+            csv.writer(out, lineterminator="\n").writerows([NETWORK_COLUMNS, *networks_of(run)])
     worlds, points = read_metrics(report / "metrics.csv"), read_points(matched)
     worlds = {world: worlds[world] for world in points if world in worlds}
     if not worlds:
@@ -171,7 +209,9 @@ def predict(report, matched):
         raise SystemExit(f"{report}: {len(others)} worlds that flew are not those of the same name in sweeps/worlds, the first {others[0]}; "
                          f"fly sweeps/matched.yaml as it is now (scripts/reproduce matched)")
     left = {world for world in worlds if float(points[world]["implausibility"]) < NOT_RULED_OUT}
-    write_worlds(report / "worlds.csv", worlds, points)
-    text = "\n".join([*share_lines(worlds, left), "", *second_lines(worlds, points), "", *hangs_on_lines(worlds, points)]) + "\n"
+    networks = read_networks(report / "networks.csv")
+    second = second_implausibilities({world: networks[world] for world in worlds})
+    write_worlds(report / "worlds.csv", worlds, points, second)
+    text = "\n".join([*share_lines(worlds, left), "", *second_lines(worlds, points, second), "", *hangs_on_lines(worlds, points)]) + "\n"
     (report / "worlds.txt").write_text(text)
     return text

@@ -17,20 +17,23 @@ std::string Value(const std::string& name, const std::vector<std::int64_t>& dims
   std::string shape;
   for (const std::int64_t dim : dims) {
     ProtobufWriter side;
-    dim == kOpen ? side.Bytes(onnx::kDimName, "open")
-                 : side.Number(onnx::kDimValue, static_cast<std::uint64_t>(dim == kOpenAsNumber ? -1 : dim));
-    shape += Message(onnx::kShapeDim, side.bytes());
+    dim == kOpen ? side.Bytes(perception::onnx::kDimName, "open")
+                 : side.Number(perception::onnx::kDimValue,
+                               static_cast<std::uint64_t>(dim == kOpenAsNumber ? -1 : dim));
+    shape += Message(perception::onnx::kShapeDim, side.bytes());
   }
   ProtobufWriter tensor;
-  tensor.Number(onnx::kTensorElement, static_cast<std::uint64_t>(type)).Bytes(onnx::kTensorShape, shape);
-  return Message(onnx::kValueName, name) +
-         Message(onnx::kValueType, Message(onnx::kTypeTensor, tensor.bytes()));
+  tensor.Number(perception::onnx::kTensorElement, static_cast<std::uint64_t>(type))
+      .Bytes(perception::onnx::kTensorShape, shape);
+  return Message(perception::onnx::kValueName, name) +
+         Message(perception::onnx::kValueType, Message(perception::onnx::kTypeTensor, tensor.bytes()));
 }
 
 ProtobufWriter Tensor(const std::string& name, const std::vector<std::int64_t>& dims, int type) {
   ProtobufWriter tensor;
-  for (const std::int64_t dim : dims) tensor.Number(onnx::kDims, static_cast<std::uint64_t>(dim));
-  tensor.Number(onnx::kType, static_cast<std::uint64_t>(type)).Bytes(onnx::kTensorName, name);
+  for (const std::int64_t dim : dims) tensor.Number(perception::onnx::kDims, static_cast<std::uint64_t>(dim));
+  tensor.Number(perception::onnx::kType, static_cast<std::uint64_t>(type))
+      .Bytes(perception::onnx::kTensorName, name);
   return tensor;
 }
 
@@ -40,23 +43,24 @@ std::string Raw(const std::vector<T>& values) {
 }
 
 std::string Pair(const std::string& key, const std::string& value) {
-  return Message(onnx::kPairKey, key) + Message(onnx::kPairValue, value);
+  return Message(perception::onnx::kPairKey, key) + Message(perception::onnx::kPairValue, value);
 }
 
 std::string AttributeBytes(const OnnxAttribute& attribute) {
   ProtobufWriter out;
-  out.Bytes(onnx::kAttributeName, attribute.name);
+  out.Bytes(perception::onnx::kAttributeName, attribute.name);
   if (const auto* number = std::get_if<std::int64_t>(&attribute.value))
-    out.Number(onnx::kAttributeInt, static_cast<std::uint64_t>(*number)).Number(onnx::kAttributeType, 2);
+    out.Number(perception::onnx::kAttributeInt, static_cast<std::uint64_t>(*number))
+        .Number(perception::onnx::kAttributeType, 2);
   if (const auto* number = std::get_if<float>(&attribute.value))
-    out.Float(onnx::kAttributeFloat, *number).Number(onnx::kAttributeType, 1);
+    out.Float(perception::onnx::kAttributeFloat, *number).Number(perception::onnx::kAttributeType, 1);
   if (const auto* numbers = std::get_if<std::vector<std::int64_t>>(&attribute.value)) {
     for (const std::int64_t number : *numbers)
-      out.Number(onnx::kAttributeInts, static_cast<std::uint64_t>(number));
-    out.Number(onnx::kAttributeType, 7);
+      out.Number(perception::onnx::kAttributeInts, static_cast<std::uint64_t>(number));
+    out.Number(perception::onnx::kAttributeType, 7);
   }
   if (const auto* text = std::get_if<std::string>(&attribute.value))
-    out.Bytes(onnx::kAttributeText, *text).Number(onnx::kAttributeType, 3);
+    out.Bytes(perception::onnx::kAttributeText, *text).Number(perception::onnx::kAttributeType, 3);
   return out.bytes();
 }
 
@@ -70,18 +74,19 @@ std::uint16_t HalfBits(float value) {
 }
 
 OnnxWriter& OnnxWriter::Input(const std::string& name, const std::vector<std::int64_t>& dims, int type) {
-  inputs_ += Message(onnx::kInput, Value(name, dims, type));
+  inputs_ += Message(perception::onnx::kInput, Value(name, dims, type));
   return *this;
 }
 
 OnnxWriter& OnnxWriter::Output(const std::string& name, const std::vector<std::int64_t>& dims, int type) {
-  outputs_ += Message(onnx::kOutput, Value(name, dims, type));
+  outputs_ += Message(perception::onnx::kOutput, Value(name, dims, type));
   return *this;
 }
 
 OnnxWriter& OnnxWriter::Weights(const std::string& name, const std::vector<std::int64_t>& dims,
                                 const std::vector<float>& values) {
-  weights_ += Message(onnx::kInitializer, Tensor(name, dims, kFloat).Bytes(onnx::kRaw, Raw(values)).bytes());
+  weights_ += Message(perception::onnx::kInitializer,
+                      Tensor(name, dims, kFloat).Bytes(perception::onnx::kRaw, Raw(values)).bytes());
   return *this;
 }
 
@@ -90,17 +95,18 @@ OnnxWriter& OnnxWriter::Halves(const std::string& name, const std::vector<std::i
   ProtobufWriter tensor = Tensor(name, dims, kFloat16);
   std::vector<std::uint16_t> halves;
   for (const float value : values) halves.push_back(HalfBits(value));
-  if (raw) tensor.Bytes(onnx::kRaw, Raw(halves));
+  if (raw) tensor.Bytes(perception::onnx::kRaw, Raw(halves));
   for (const std::uint16_t half : halves)
-    if (!raw) tensor.Number(onnx::kInt32s, half);
-  weights_ += Message(onnx::kInitializer, tensor.bytes());
+    if (!raw) tensor.Number(perception::onnx::kInt32s, half);
+  weights_ += Message(perception::onnx::kInitializer, tensor.bytes());
   return *this;
 }
 
 OnnxWriter& OnnxWriter::Integers(const std::string& name, const std::vector<std::int64_t>& values) {
-  weights_ += Message(onnx::kInitializer, Tensor(name, {static_cast<std::int64_t>(values.size())}, kInt64)
-                                              .Bytes(onnx::kRaw, Raw(values))
-                                              .bytes());
+  weights_ +=
+      Message(perception::onnx::kInitializer, Tensor(name, {static_cast<std::int64_t>(values.size())}, kInt64)
+                                                  .Bytes(perception::onnx::kRaw, Raw(values))
+                                                  .bytes());
   return *this;
 }
 
@@ -108,11 +114,11 @@ OnnxWriter& OnnxWriter::Outside(const std::string& name, const std::vector<std::
                                 const std::string& file, const std::string& offset,
                                 const std::string& length) {
   ProtobufWriter tensor = Tensor(name, dims, kFloat);
-  tensor.Bytes(onnx::kExternal, Pair("location", file));
-  if (!offset.empty()) tensor.Bytes(onnx::kExternal, Pair("offset", offset));
-  if (!length.empty()) tensor.Bytes(onnx::kExternal, Pair("length", length));
-  tensor.Number(onnx::kLocation, onnx::kLiesOutside);
-  weights_ += Message(onnx::kInitializer, tensor.bytes());
+  tensor.Bytes(perception::onnx::kExternal, Pair("location", file));
+  if (!offset.empty()) tensor.Bytes(perception::onnx::kExternal, Pair("offset", offset));
+  if (!length.empty()) tensor.Bytes(perception::onnx::kExternal, Pair("length", length));
+  tensor.Number(perception::onnx::kLocation, perception::onnx::kLiesOutside);
+  weights_ += Message(perception::onnx::kInitializer, tensor.bytes());
   return *this;
 }
 
@@ -120,13 +126,13 @@ OnnxWriter& OnnxWriter::Step(const std::string& op, const std::vector<std::strin
                              const std::vector<std::string>& outputs,
                              const std::vector<OnnxAttribute>& attributes, const std::string& domain) {
   ProtobufWriter node;
-  for (const std::string& input : inputs) node.Bytes(onnx::kNodeInput, input);
-  for (const std::string& output : outputs) node.Bytes(onnx::kNodeOutput, output);
-  node.Bytes(onnx::kNodeName, "the " + op).Bytes(onnx::kNodeOp, op);
+  for (const std::string& input : inputs) node.Bytes(perception::onnx::kNodeInput, input);
+  for (const std::string& output : outputs) node.Bytes(perception::onnx::kNodeOutput, output);
+  node.Bytes(perception::onnx::kNodeName, "the " + op).Bytes(perception::onnx::kNodeOp, op);
   for (const OnnxAttribute& attribute : attributes)
-    node.Bytes(onnx::kNodeAttribute, AttributeBytes(attribute));
-  if (!domain.empty()) node.Bytes(onnx::kNodeDomain, domain);
-  steps_ += Message(onnx::kNode, node.bytes());
+    node.Bytes(perception::onnx::kNodeAttribute, AttributeBytes(attribute));
+  if (!domain.empty()) node.Bytes(perception::onnx::kNodeDomain, domain);
+  steps_ += Message(perception::onnx::kNode, node.bytes());
   return *this;
 }
 
@@ -139,8 +145,8 @@ std::string OnnxWriter::Bytes() const {
   constexpr std::uint32_t kIrVersion = 1, kOpset = 8, kGraphName = 2, kVersion = 2;
   ProtobufWriter opset, model;
   opset.Number(kVersion, 11);
-  model.Number(kIrVersion, 7).Bytes(onnx::kProducer, producer_);
-  model.Bytes(onnx::kGraph, steps_ + Message(kGraphName, "g") + weights_ + inputs_ + outputs_);
+  model.Number(kIrVersion, 7).Bytes(perception::onnx::kProducer, producer_);
+  model.Bytes(perception::onnx::kGraph, steps_ + Message(kGraphName, "g") + weights_ + inputs_ + outputs_);
   return model.Bytes(kOpset, opset.bytes()).bytes();
 }
 
