@@ -99,6 +99,19 @@ void SealRecipe(Connection& database) {
   seal.Run(RecipeChecksum(database));
 }
 
+// A view may compute without end and a trigger may change what is written: whoever gives a file away decides what they do.
+void RefuseForeignSchema(Connection& database) {
+  Statement select(
+      database,
+      "SELECT type, name FROM sqlite_schema WHERE type = 'trigger' OR (rootpage = 0 AND lower(name) IN ("
+      "'recipe', 'code', 'inputs', 'places', 'files', 'stages', 'runs', 'networks', 'flown_networks', "
+      "'sessions', 'session_notes', 'failures', 'timings', 'missions', 'timesteps', 'finished', 'worlds'))");
+  if (select.Step())
+    throw UserError(fmt::format("{}: an ed3r file that somebody has changed: '{}' is a {}, where ed3r has {}",
+                                database.file(), select.Text(1), select.Text(0),
+                                select.Text(0) == "trigger" ? "none" : "a table"));
+}
+
 std::optional<std::string> RecipeValue(Connection& database, std::string_view key) {
   Statement select(database, "SELECT value FROM recipe WHERE key = ?");
   select.Bind(0, key);
@@ -132,6 +145,7 @@ FileKind CheckFile(Connection& database, FileUse use) {
   if (version < 1)
     throw UserError(fmt::format("{}: written by an older ed3r (format {}, this one reads 1 and up)",
                                 database.file(), version));
+  RefuseForeignSchema(database);
   const RecordTables tables(database);
   if (version >= 2 && RecipeChecksum(database) != RecipeValue(database, "checksum"))
     FailDamagedRecipe(database, "its plan, layout or inputs do not match their checksum");

@@ -32,11 +32,15 @@ int OpenFlags(Connection::Access access) {
   return 0;
 }
 
-// SQLite would wait for a pipe, and take a folder for a locked file.
+// SQLite would wait for a pipe, take a folder for a locked file, and make what a link leads to.
 void CheckFiles(const std::string& file) {
   for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
     std::error_code error;  // another process may be making or removing them
     const std::filesystem::file_status found = std::filesystem::status(file + suffix, error);
+    if (!std::filesystem::exists(found) && std::filesystem::is_symlink(file + suffix, error))
+      throw UserError(
+          fmt::format("{}{}: is a link to a file that is not there; take it away, or give another directory",
+                      file, suffix));
     if (!std::filesystem::exists(found) || std::filesystem::is_regular_file(found)) continue;
     throw UserError(fmt::format("{}{}: cannot be read: {}", file, suffix, WhyNoRegularFile(file + suffix)));
   }

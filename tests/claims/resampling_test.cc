@@ -77,6 +77,27 @@ TEST(UncertaintyTest, OverNetworksItIsStudents) {
   EXPECT_NEAR(10 - u.lo, 4.30265 * std::sqrt(1.5), 1e-3);
 }
 
+// Missions: squares 2.25 + 0.25 + 0.25 + 2.25 over 3; the ends of four are the percentiles. Networks: sd sqrt(2) of 9 and 11,
+// x sqrt(2/1), x t of 1 degree 12.706.
+TEST(UncertaintyTest, OfFewResamplesByHand) {
+  const statistics::Uncertainty u = statistics::UncertaintyOf({2.5, {4, 1, 3, 2}, {}, 1});
+  EXPECT_NEAR(u.sd_missions, std::sqrt(5.0 / 3.0), 1e-12);
+  EXPECT_EQ(u.lo, 1);
+  EXPECT_EQ(u.hi, 4);
+  const statistics::Uncertainty two = statistics::UncertaintyOf({2.5, {4, 1, 3, 2}, {9, 11}, 2});
+  EXPECT_NEAR(two.sd_networks, 2, 1e-12);
+  EXPECT_NEAR(two.lo, 2.5 - 25.4124095, 1e-6);
+  EXPECT_NEAR(two.hi, 2.5 + 25.4124095, 1e-6);
+  EXPECT_TRUE(std::isnan(statistics::UncertaintyOf({2.5, {4, 1, 3, 2}, {9, 11}, 1}).sd_networks));
+}
+
+TEST(UncertaintyTest, HalfOfTheResamplesAreEnoughAndOneIsNot) {
+  const double none = std::nan("");
+  EXPECT_NEAR(statistics::UncertaintyOf({1, {1, none, 2, none}, {}, 1}).sd_missions, std::sqrt(0.5), 1e-12);
+  EXPECT_TRUE(std::isnan(statistics::UncertaintyOf({1, {1, none, 2, none, none}, {}, 1}).sd_missions));
+  EXPECT_TRUE(std::isnan(statistics::UncertaintyOf({1, {1, none}, {}, 1}).sd_missions));
+}
+
 TEST(UncertaintyTest, NetworksThatAgreeByAccidentNarrowNothing) {
   const statistics::Uncertainty u =
       statistics::UncertaintyOf({10, Ramp(4), std::vector<double>(1000, 10.0), 5});
@@ -110,6 +131,7 @@ TEST(SidesTest, TwiceTheTailOfTheWiderLevel) {
   const statistics::Resampled wide{10, Ramp(4), networks, 5};
   const statistics::Uncertainty w = statistics::UncertaintyOf(wide);
   EXPECT_NEAR(statistics::TestAgainst(wide, w, 10 - 2.776445 * w.sd_networks).above, 0.05, 1e-6);
+  EXPECT_NEAR(statistics::TestAgainst(wide, w, 10 + 2.776445 * w.sd_networks).below, 0.05, 1e-6);
 }
 
 // By construction ("always offloads"): no spread at all.

@@ -14,10 +14,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::map<std::string, FuzzFunction> kTargets = {
-    {"sweep", FuzzSweep}, {"world", FuzzWorld},          {"grid", FuzzGrid},  {"stem_map", FuzzStemMap},
-    {"log", FuzzLog},     {"log_format", FuzzLogFormat}, {"npy", FuzzNpy},    {"picture", FuzzPicture},
-    {"onnx", FuzzOnnx},   {"network", FuzzNetwork},      {"model", FuzzModel}};
+const std::map<std::string, FuzzFunction> kTargets = {{"sweep", FuzzSweep},
+                                                      {"world", FuzzWorld},
+                                                      {"grid", FuzzGrid},
+                                                      {"stem_map", FuzzStemMap},
+                                                      {"log", FuzzLog},
+                                                      {"log_format", FuzzLogFormat},
+                                                      {"npy", FuzzNpy},
+                                                      {"picture", FuzzPicture},
+                                                      {"onnx", FuzzOnnx},
+                                                      {"network", FuzzNetwork},
+                                                      {"model", FuzzModel},
+                                                      {"weights", FuzzWeights},
+                                                      {"checkpoint", FuzzCheckpoint},
+                                                      {"airframe", FuzzAirframe},
+                                                      {"store", FuzzStore}};
 
 TEST(CorpusTest, EveryFileIsReadOrRefused) {
   for (const auto& [name, target] : kTargets) {

@@ -3,19 +3,26 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
 
 #include "engine/core/check.h"
-#include "engine/core/sha256.h"
+#include "engine/core/sealed_file.h"
 #include "engine/perception/vision/model_file.h"
 #include "engine/perception/vision/onnx_external.h"
 #include "engine/perception/vision/onnx_gate.h"
 #include "engine/perception/vision/onnx_outline.h"
 #include "engine/perception/vision/onnx_reading.h"
 #include "engine/perception/vision/onnx_rewrite.h"
+#include "engine/rfnn/checkpoint.h"
+#include "engine/rfnn/model_file.h"
 #include "engine/rfnn/onnx_graph.h"
+#include "engine/store/digest.h"
+#include "engine/store/reader.h"
+#include "engine/store/schema.h"
+#include "engine/sweep/setting.h"
 #include "engine/sweep/sweep_file.h"
 #include "engine/world/jpeg_check.h"
 #include "engine/world/picture_file.h"
@@ -149,16 +156,46 @@ void FuzzNetwork(std::string_view bytes) {
   Refusable([&] { rfnn::ParseOnnxGraph(bytes, "x.onnx"); });
 }
 
-// The bytes are the payload: what whoever seals a file himself may put into it.
 void FuzzModel(std::string_view bytes) {
-  std::string sealed = "ED3RCNN\n";
-  for (int i = 0; i < 4; ++i) sealed += static_cast<char>(i == 0);
-  for (int i = 0; i < 8; ++i) sealed += static_cast<char>(bytes.size() >> (8 * i));
-  sealed += bytes;
-  Sha256 hash;
-  hash.Update(sealed);
-  sealed += hash.Hex();
-  Refusable([&] { perception::ParseDetectorModel(sealed, "x.ed3rnet"); });
+  Refusable([&] {
+    perception::ParseDetectorModel(Sealed({"ED3RCNN\n", 1, "detector network"}, bytes), "x.ed3rnet");
+  });
+}
+
+void FuzzWeights(std::string_view bytes) {
+  static constexpr std::array<std::string_view, 2> kFeatures = {"x_m", "dx_m"};
+  static constexpr std::array kHidden = {2};
+  const rfnn::NetworkDesign design = {"small", kFeatures, 1, kHidden, 1};
+  Refusable([&] {
+    const rfnn::Model model = rfnn::OpenModel(Sealed({"ED3RRFNN", 2, "model file"}, bytes), "x.rfnn", design);
+    rfnn::ModelBytes(model);
+    rfnn::NetworkHash(model);
+  });
+}
+
+void FuzzCheckpoint(std::string_view bytes) {
+  const InputFile file(Sealed({"ED3RTRCP", 1, "training checkpoint"}, bytes), "x.checkpoint");
+  Refusable([&] { rfnn::ReadCheckpoint(file.path(), "key", 3); });
+}
+
+void FuzzAirframe(std::string_view bytes) {
+  const InputFile file(bytes, "airframe.yaml");
+  Refusable([&] { sweep::ReadAirframeFile(file.path(), "x.yaml:1:1"); });
+}
+
+void FuzzStore(std::string_view bytes) {
+  const InputFile file(bytes, store::kResultsFile);
+  const std::string dir = std::filesystem::path(file.path()).parent_path();
+  Refusable([&] {
+    store::ResultReader reader(dir);
+    Refusable([&] { reader.Status(); });
+    Refusable([&] { reader.Networks(); });
+    Refusable([&] { reader.Files(); });
+    Refusable([&] { reader.Sessions(); });
+    Refusable([&] { reader.FindDamage(); });
+    Refusable([&] { store::DigestOf(reader); });
+  });
+  for (const char* beside : {"-wal", "-shm", "-journal"}) ::unlink((file.path() + beside).c_str());
 }
 
 }  // namespace ed3r

@@ -21,6 +21,12 @@ void FuzzNpy(std::string_view bytes);
 void FuzzPicture(std::string_view bytes);
 void FuzzOnnx(std::string_view bytes);
 void FuzzNetwork(std::string_view bytes);
+// The payload of each: what whoever seals a file himself may put into it.
 void FuzzModel(std::string_view bytes);
+void FuzzWeights(std::string_view bytes);
+void FuzzCheckpoint(std::string_view bytes);
+void FuzzAirframe(std::string_view bytes);
+// A whole results.sqlite: every mission, network and file of it is read.
+void FuzzStore(std::string_view bytes);
 
 }  // namespace ed3r

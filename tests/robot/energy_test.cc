@@ -56,6 +56,10 @@ TEST(EnergyTest, VerticalFlightInEachForm) {
   const MovementPower printed = MovementPowerOf(Heavy(), Thin(), energy);
   EXPECT_NEAR(printed.ascent_w, 27 + drag, 1e-9);
   EXPECT_NEAR(printed.descent_w, 27 - drag, 1e-9);
+  energy.vertical_form = VerticalForm::kMgv;
+  const MovementPower per_speed = MovementPowerOf(Heavy(), Thin(), energy);
+  EXPECT_NEAR(per_speed.ascent_w, 27 * 4 + drag, 1e-9);
+  EXPECT_NEAR(per_speed.descent_w, 27 * 4 - drag, 1e-9);
   energy.vertical_form = VerticalForm::kClimb;
   const MovementPower climb = MovementPowerOf(Heavy(), Thin(), energy);
   EXPECT_NEAR(climb.ascent_w - climb.hover_w, 27 * 4.0, 1e-9);
@@ -92,6 +96,48 @@ TEST(EnergyTest, MomentumTheoryInHoverAndClimb) {
   EXPECT_NEAR(power.ascent_w, axial_w(4.0), 1e-6 * hover_w);
   EXPECT_LT(power.descent_w, power.hover_w);
   EXPECT_LT(power.horizontal_w, power.hover_w) << "translational lift";
+}
+
+// The shares at several airspeeds: v_i of Glauert's equation found by bisection outside this program, the rest by hand from
+// P = [kappa (1 + chi (1 - cos X)) T v_i + c_p T^1.5 / sqrt(2 rho A) + D V + m g v_v] / efficiency.
+TEST(EnergyTest, MomentumTheoryInFlight) {
+  const MomentumParameters<> parameters{0.8, 1.25, 0.6, 0.3, 0.2};
+  const Air air{0.8, 9.0};
+  struct Flight {
+    double horizontal_mps, climb_mps, induced_w, profile_w, parasite_w, climb_w;
+  };
+  for (const Flight& by_hand :
+       {Flight{4, 0, 193.37960134234342, 47.98081155206458, 6.4, 0},
+        Flight{4, 2, 162.3655160011831, 49.91637511265461, 8.944271909999161, 67.5},
+        Flight{3, -2, 242.87604459237474, 46.410453431644875, 4.6872166581031856, -67.5},
+        // faster than its own wake: the flow along the thrust stops at -v_i(hover)
+        Flight{0, -12, 140.19210354184148, 20.794436386368613, 172.8, -242.11478795456208}}) {
+    const MomentumPower<> power =
+        MomentumPowersW(parameters, 3.0, by_hand.horizontal_mps, by_hand.climb_mps, air, kDiscM2);
+    SCOPED_TRACE(by_hand.climb_mps);
+    EXPECT_NEAR(power.induced_w, by_hand.induced_w, 1e-9);
+    EXPECT_NEAR(power.profile_w, by_hand.profile_w, 1e-9);
+    EXPECT_NEAR(power.parasite_w, by_hand.parasite_w, 1e-9);
+    EXPECT_NEAR(power.climb_w, by_hand.climb_w, 1e-9);
+    EXPECT_NEAR(power.TotalW(), by_hand.induced_w + by_hand.profile_w + by_hand.parasite_w + by_hand.climb_w,
+                1e-9);
+  }
+}
+
+// Induced power (1 + sqrt 5) / 2 x 0.5 of what the descent gives back: the rest would charge the battery.
+TEST(EnergyTest, AFastDescentWithCheapRotorsTakesNothing) {
+  const MomentumPower<> power =
+      MomentumPowersW(MomentumParameters<>{0.8, 0.5, 0.0, 0.0, 0.0}, 3.0, 0.0, -12.0, {0.8, 9.0}, kDiscM2);
+  EXPECT_NEAR(power.induced_w, 0.5 * 0.5 * (1 + std::sqrt(5.0)) * 27 * std::sqrt(27 / (1.6 * kDiscM2)) / 0.8,
+              1e-9);
+  EXPECT_EQ(power.climb_w, -power.induced_w);
+  EXPECT_EQ(power.TotalW(), 0.0);
+}
+
+TEST(EnergyTest, ATimestepOfNothingCostsNothing) {
+  EXPECT_EQ(StepTime().TotalS(), 0.0);
+  EXPECT_EQ(StepEnergy().TotalJ(), 0.0);
+  EXPECT_EQ(Charge({1, 1, 1, 1}, {}, {}).TotalJ(), 0.0);
 }
 
 TEST(EnergyTest, SensorsAreBilledForThePeriod) {

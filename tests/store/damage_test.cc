@@ -74,6 +74,36 @@ TEST(DamageTest, OtherColumns) {
   ExpectRefused(temp / "run", "written by another version of ed3r: this one does not know its column score");
 }
 
+TEST(DamageTest, ATableThatComputesAndATriggerThatWrites) {
+  const TempDir temp;
+  WriteStore(temp / "view", {{0, 0, 0}});
+  Sql(ResultsIn(temp / "view"),
+      "ALTER TABLE missions RENAME TO other; CREATE VIEW Missions AS WITH RECURSIVE n(i) AS (SELECT 0 UNION "
+      "ALL SELECT i + 1 FROM n) SELECT other.* FROM n JOIN other");
+  ExpectRefused(temp / "view", "'Missions' is a view, where ed3r has a table");
+  WriteStore(temp / "trigger", {{0, 0, 0}});
+  Sql(ResultsIn(temp / "trigger"),
+      "CREATE TRIGGER halve AFTER INSERT ON missions BEGIN UPDATE missions SET total_j = total_j / 2; END");
+  ExpectRefused(temp / "trigger", "'halve' is a trigger, where ed3r has none");
+}
+
+TEST(DamageTest, TablesAndViewsOfOnesOwnAreLeftAlone) {
+  const TempDir temp;
+  WriteStore(temp / "run", {{0, 0, 0}});
+  Sql(ResultsIn(temp / "run"),
+      "CREATE TABLE mine (x); CREATE VIEW my_missions AS SELECT total_j FROM missions");
+  EXPECT_EQ(ResultReader(temp / "run").CountMissions(), 1);
+}
+
+TEST(DamageTest, ALinkToNowhereIsNotWrittenThrough) {
+  const TempDir temp;
+  fs::create_directories(temp / "run");
+  fs::create_symlink("elsewhere", ResultsIn(temp / "run"));
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultStore::Open(temp / "run", TestRecipe(), TestLayout()); }),
+                       "is a link to a file that is not there"));
+  EXPECT_FALSE(fs::exists(temp / "run/elsewhere"));
+}
+
 TEST(DamageTest, ATruncatedFile) {
   const TempDir temp;
   WriteStore(temp / "run", AllMissions(TestLayout()));
