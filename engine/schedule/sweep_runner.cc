@@ -128,7 +128,12 @@ class SweepRun {
     const WatchedThread watched;
     std::optional<PhaseSampler> sampler;
     if (options_.profile) sampler.emplace();
-    RunStages();
+    try {
+      RunStages();
+    } catch (...) {  // an empty store would look like a task that has begun
+      store_->DiscardUnused();
+      throw;
+    }
     if (sampler) {
       summary_.profile = sampler->Finish();
       store_->PutNote(store::kProfileNote, summary_.profile.Text());

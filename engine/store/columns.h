@@ -103,11 +103,15 @@ void ReadColumns(const Statement& statement, int next, Record& record) {
   });
 }
 
-// Appends eight bytes, least significant first, whatever the machine's order.
-inline void AppendInt(std::string& bytes, std::int64_t value) {
+// Writes eight bytes, least significant first, whatever the machine's order.
+inline void PutInt(char* bytes, std::int64_t value) {
   const auto bits = static_cast<std::uint64_t>(value);
+  for (int i = 0; i < 8; ++i) bytes[i] = static_cast<char>(bits >> (8 * i));
+}
+
+inline void AppendInt(std::string& bytes, std::int64_t value) {
   char little[8];
-  for (int i = 0; i < 8; ++i) little[i] = static_cast<char>(bits >> (8 * i));
+  PutInt(little, value);
   bytes.append(little, sizeof little);
 }
 
@@ -169,7 +173,13 @@ class StoredColumns {
       else
         values.at(count++) = field;
     });
-    for (const std::size_t i : order_) AppendInt(bytes, values[i]);
+    const std::size_t before = bytes.size();
+    bytes.resize(before + 8 * order_.size());
+    char* next = bytes.data() + before;
+    for (const std::size_t i : order_) {
+      PutInt(next, values[i]);
+      next += 8;
+    }
   }
 
  private:

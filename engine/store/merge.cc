@@ -6,11 +6,13 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <thread>
 #include <utility>
 
 #include "engine/core/check.h"
 #include "engine/store/damage.h"
 #include "engine/store/digest.h"
+#include "engine/store/joined_missions.h"
 #include "engine/store/reader.h"
 #include "engine/store/records.h"
 #include "engine/store/schema.h"
@@ -19,33 +21,15 @@
 namespace ed3r::store {
 namespace {
 
-// Sources that are read side by side: each keeps a file open and a few megabytes. Read so, their missions come in plan order,
-// however they were divided, and the target's tables grow at their ends.
+// Stores that are read side by side: each keeps files open and some hundred kilobytes. Read so, their missions come in plan
+// order, however they were divided, and the target's tables grow at their ends.
 constexpr std::size_t kReadAtOnce = 128;
+// Reading and comparing a mission takes about twice as long as putting it.
+constexpr int kMostReadingThreads = 4;
 
-// The missions of one store in plan order, as of one moment.
-class Source {
- public:
-  explicit Source(const std::string& dir)
-      : reader_(dir),
-        database_((std::filesystem::path(dir) / kResultsFile).string(), Connection::Access::kReadOnly),
-        moment_(database_, Transaction::Kind::kRead),
-        cursor_(database_, reader_.Layout(), "", Steps::kLoad),
-        more_(cursor_.Next()) {}
-
-  ResultReader& reader() { return reader_; }
-  bool more() const { return more_; }
-  const MissionCursor& cursor() const { return cursor_; }
-  std::pair<std::int64_t, std::int64_t> Key() const { return {cursor_.run(), cursor_.mission()}; }
-  void Next() { more_ = cursor_.Next(); }
-
- private:
-  ResultReader reader_;
-  Connection database_;
-  Transaction moment_;
-  MissionCursor cursor_;
-  bool more_;
-};
+int ReadingThreads() {
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMostReadingThreads);
+}
 
 // A result file that others are merged into; the transaction is the caller's.
 class Target {
@@ -62,29 +46,30 @@ class Target {
                      "INSERT INTO sessions VALUES (?, ?, ?, ?, nullif(?, '')) ON CONFLICT DO UPDATE "
                      "SET ended_utc = coalesce(excluded.ended_utc, ended_utc)"),
         put_note_(database, "INSERT OR REPLACE INTO session_notes VALUES (?, ?, ?)"),
-        has_mission_(database, "SELECT 1 FROM missions WHERE run = ? AND mission = ?") {}
+        has_mission_(database, "SELECT 1 FROM missions WHERE run = ? AND mission = ?"),
+        holds_missions_(database.Int("SELECT count(*) FROM (SELECT 1 FROM missions LIMIT 1)") > 0) {}
 
-  void Add(const std::vector<std::unique_ptr<Source>>& sources) {
+  void Add(const std::vector<std::unique_ptr<ResultReader>>& sources) {
+    std::vector<bool> same_columns;
     for (const auto& source : sources) {
-      AddSessions(source->reader());
-      PutNetworks(database_, layout_, source->reader().Networks());
+      AddSessions(*source);
+      PutNetworks(database_, layout_, source->Networks());
+      same_columns.push_back(HasColumnsOf(source->Tables()));
     }
-    while (Source* next = FirstOf(sources)) {
-      AddMission(next->reader().dir(), next->cursor());
-      next->Next();
-    }
-    for (const auto& source : sources) AddFailures(source->reader());
+    JoinedMissions missions(sources, ReadingThreads());
+    while (const ComparedMission* mission = missions.Next())
+      AddMission(sources[missions.source()]->dir(), same_columns[missions.source()], *mission);
+    for (const auto& source : sources) AddFailures(*source);
+    holds_missions_ = true;
   }
 
   const MergeSummary& summary() const { return summary_; }
 
  private:
-  // The one whose next mission comes first in the plan.
-  static Source* FirstOf(const std::vector<std::unique_ptr<Source>>& sources) {
-    Source* first = nullptr;
-    for (const auto& source : sources)
-      if (source->more() && (first == nullptr || source->Key() < first->Key())) first = source.get();
-    return first;
+  // Where both files' checksums are over the same, one is known by the other.
+  bool HasColumnsOf(const RecordTables& tables) const {
+    return tables.checked() && tables.missions().names() == writer_.Tables().missions().names() &&
+           tables.timesteps().names() == writer_.Tables().timesteps().names();
   }
 
   void AddSessions(ResultReader& source) {
@@ -94,23 +79,34 @@ class Target {
     }
   }
 
-  void AddMission(const std::string& from, const MissionCursor& mission) {
-    const sweep::RunId id = mission.Checked();
-    if (cursor_.Seek(mission.run(), mission.mission())) {
-      cursor_.Checked();
-      if (CanonicalBytes(cursor_.record()) != CanonicalBytes(mission.record()) ||
-          (!mission.KeepsTimesteps() && cursor_.steps_checksum() != mission.steps_checksum()))
+  void AddMission(const std::string& from, bool same_columns, const ComparedMission& mission) {
+    const std::pair key{mission.run, mission.mission};
+    // In plan order, what an empty file holds of a mission is what was put just now.
+    const bool may_be_there = holds_missions_ || key == last_;
+    last_ = key;
+    if (may_be_there && cursor_.Seek(mission.run, mission.mission)) {
+      if (!IsSame(same_columns, mission))
         throw UserError(fmt::format("{}: {} differs from the record of another store that is merged into {}",
-                                    from, layout_.Describe(id), dir_));
+                                    from, layout_.Describe(mission.id), dir_));
       ++summary_.present;
       return;
     }
-    if (mission.KeepsTimesteps())
-      writer_.InsertMission(id, mission.record());
+    if (same_columns)
+      writer_.InsertMission(mission.id, mission.record, mission.checksums);
+    else if (mission.keeps_timesteps)
+      writer_.InsertMission(mission.id, mission.record);
     else
-      writer_.InsertWithoutTimesteps(id, mission.record(), mission.steps_checksum());
-    if (!std::isnan(mission.wall_s())) writer_.InsertTiming(id, mission.session(), mission.wall_s());
+      writer_.InsertWithoutTimesteps(mission.id, mission.record, mission.checksums.steps);
+    if (!std::isnan(mission.wall_s)) writer_.InsertTiming(mission.id, mission.session, mission.wall_s);
     ++summary_.added;
+  }
+
+  // As the mission that the cursor is at. Both have been compared with their checksums.
+  bool IsSame(bool same_columns, const ComparedMission& mission) {
+    cursor_.Checked();
+    if (same_columns) return mission.checksums == Checksums{cursor_.checksum(), cursor_.steps_checksum()};
+    return CanonicalBytes(cursor_.record()) == CanonicalBytes(mission.record) &&
+           (mission.keeps_timesteps || cursor_.steps_checksum() == mission.checksums.steps);
   }
 
   void AddFailures(ResultReader& source) {
@@ -131,6 +127,8 @@ class Target {
   RecordWriter writer_;
   MissionCursor cursor_;
   Statement put_session_, put_note_, has_mission_;
+  bool holds_missions_;  // from before, or from other stores than those that are read now
+  std::pair<std::int64_t, std::int64_t> last_{-1, -1};  // the mission that was added last
   MergeSummary summary_;
 };
 
@@ -188,9 +186,9 @@ MergeSummary MergeStores(const std::string& out, const std::vector<std::string>&
     CheckWhole(file.database(), layout);
     Target target(file.database(), layout, out);
     for (std::size_t begin = 0; begin < others.size(); begin += kReadAtOnce) {
-      std::vector<std::unique_ptr<Source>> sources;
+      std::vector<std::unique_ptr<ResultReader>> sources;
       for (std::size_t i = begin; i < std::min(begin + kReadAtOnce, others.size()); ++i)
-        sources.push_back(std::make_unique<Source>(others[i]));
+        sources.push_back(std::make_unique<ResultReader>(others[i]));
       target.Add(sources);
     }
     MergeSummary summary = target.summary();

@@ -26,8 +26,13 @@ RecordWriter::RecordWriter(Connection& database, const RunLayout& layout)
       delete_failure_(database, "DELETE FROM failures WHERE run = ? AND mission = ?") {}
 
 void RecordWriter::InsertMission(const sweep::RunId& id, const mission::MissionRecord& record) {
+  InsertMission(id, record, tables_.Of(layout_, id, record));
+}
+
+void RecordWriter::InsertMission(const sweep::RunId& id, const mission::MissionRecord& record,
+                                 const Checksums& checksums) {
   CheckStorable(record);
-  InsertRecord(id, record, tables_.StepsChecksum(record.steps));
+  InsertRecord(id, record, checksums);
   if (!tables_.KeepsTimesteps(id.stage, record)) return;
   insert_step_.Bind(0, layout_.RunIndex(id));
   insert_step_.Bind(1, std::int64_t{id.mission});
@@ -40,16 +45,16 @@ void RecordWriter::InsertMission(const sweep::RunId& id, const mission::MissionR
 void RecordWriter::InsertWithoutTimesteps(const sweep::RunId& id, const mission::MissionRecord& record,
                                           const std::string& steps_checksum) {
   ED3R_CHECK(!tables_.KeepsTimesteps(id.stage, record), layout_.Describe(id));
-  InsertRecord(id, record, steps_checksum);
+  InsertRecord(id, record, {tables_.MissionChecksum(layout_, id, record, steps_checksum), steps_checksum});
 }
 
 void RecordWriter::InsertRecord(const sweep::RunId& id, const mission::MissionRecord& record,
-                                const std::string& steps_checksum) {
+                                const Checksums& checksums) {
   const std::int64_t run = layout_.RunIndex(id), mission = id.mission;
   insert_mission_.Bind(0, run);
   insert_mission_.Bind(1, mission);
-  insert_mission_.Bind(2, tables_.MissionChecksum(layout_, id, record, steps_checksum));
-  insert_mission_.Bind(3, steps_checksum);
+  insert_mission_.Bind(2, checksums.mission);
+  insert_mission_.Bind(3, checksums.steps);
   BindColumns(insert_mission_, 4, record);
   insert_mission_.Run();
   delete_failure_.Run(run, mission);

@@ -28,17 +28,20 @@ class RecordWriter {
 
   // Takes a failure of the same mission away: it has been flown now.
   void InsertMission(const sweep::RunId& id, const mission::MissionRecord& record);
+  // The same with its checksums over this file's columns, where they are known. Without timesteps where those are not kept.
+  void InsertMission(const sweep::RunId& id, const mission::MissionRecord& record,
+                     const Checksums& checksums);
   // One whose timesteps were not kept, by the checksum of those that it had. InternalError where they are kept.
   void InsertWithoutTimesteps(const sweep::RunId& id, const mission::MissionRecord& record,
                               const std::string& steps_checksum);
   void InsertTiming(const sweep::RunId& id, std::int64_t session, double wall_s);
+  const RecordTables& Tables() const { return tables_; }
   // Replaces an older failure of the same mission.
   void InsertFailure(const sweep::RunId& id, std::int64_t scenario, std::uint64_t seed,
                      const Failure& failure);
 
  private:
-  void InsertRecord(const sweep::RunId& id, const mission::MissionRecord& record,
-                    const std::string& steps_checksum);
+  void InsertRecord(const sweep::RunId& id, const mission::MissionRecord& record, const Checksums& checksums);
 
   const RunLayout& layout_;
   RecordTables tables_;

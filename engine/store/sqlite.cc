@@ -221,8 +221,9 @@ void Statement::Run() {
 std::int64_t Statement::Int(int column) const { return sqlite3_column_int64(statement_.get(), column); }
 
 double Statement::Real(int column) const {
-  return IsNull(column) ? std::numeric_limits<double>::quiet_NaN()
-                        : sqlite3_column_double(statement_.get(), column);
+  // NULL reads as 0.0, and few values do: most need no second call.
+  const double value = sqlite3_column_double(statement_.get(), column);
+  return value == 0.0 && IsNull(column) ? std::numeric_limits<double>::quiet_NaN() : value;
 }
 
 std::string Statement::Text(int column) const {

@@ -34,11 +34,13 @@ std::string HostName() {
 class SqliteStore final : public ResultStore {
  public:
   SqliteStore(const std::string& dir, const Recipe& recipe, const RunLayout& layout, OtherCode other_code)
-      : layout_(layout), file_(dir, recipe, layout, other_code), writer_(file_.database(), layout_) {
+      : layout_(layout), file_(dir, recipe, layout, other_code) {
+    writer_.emplace(file_.database(), layout_);
     BeginSession(recipe);
   }
 
   ~SqliteStore() override {
+    if (!writer_) return;
     try {
       group_.reset();
       Statement end(file_.database(), "UPDATE sessions SET ended_utc = ? WHERE session = ?");
@@ -57,8 +59,8 @@ class SqliteStore final : public ResultStore {
     CheckStorable(record);
     ED3R_CHECK(layout_.Contains(id), fmt::format("{}/{}/{}", id.stage, id.arm, id.mission));
     InGroup([&] {
-      writer_.InsertMission(id, record);
-      writer_.InsertTiming(id, session_, wall_s);
+      writer_->InsertMission(id, record);
+      writer_->InsertTiming(id, session_, wall_s);
     });
   }
 
@@ -70,7 +72,7 @@ class SqliteStore final : public ResultStore {
 
   void PutFailure(const sweep::RunId& id, const Failure& failure) override {
     const std::int64_t scenario = layout_.Scenario(id);  // throws before the group is touched
-    InGroup([&] { writer_.InsertFailure(id, scenario, layout_.seed, failure); });
+    InGroup([&] { writer_->InsertFailure(id, scenario, layout_.seed, failure); });
   }
 
   std::vector<DamagedMission> FindDamage() override {
@@ -97,6 +99,17 @@ class SqliteStore final : public ResultStore {
   void Commit() override {
     InGroup([&] { group_->Commit(); });
     group_.reset();
+  }
+
+  void DiscardUnused() override {
+    if (!file_.created() ||
+        file_.database().Int("SELECT (SELECT count(*) FROM missions) + (SELECT count(*) FROM "
+                             "failures) + (SELECT count(*) FROM networks)") > 0)
+      return;
+    broken_ = true;
+    group_.reset();
+    writer_.reset();
+    file_.Discard();
   }
 
  private:
@@ -129,9 +142,9 @@ class SqliteStore final : public ResultStore {
   }
 
   RunLayout layout_;
-  mutable StoreFile file_;  // reading moves SQLite's cursors
-  RecordWriter writer_;
-  std::optional<Transaction> group_;  // since the last commit
+  mutable StoreFile file_;              // reading moves SQLite's cursors
+  std::optional<RecordWriter> writer_;  // none once it is discarded
+  std::optional<Transaction> group_;    // since the last commit
   std::int64_t session_ = 0;
   bool broken_ = false;
 };

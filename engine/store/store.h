@@ -62,6 +62,10 @@ class ResultStore {
   virtual void PutNote(const std::string& name, const std::string& text) = 0;
 
   virtual void Commit() = 0;  // everything put so far survives a kill
+
+  // For a run that is refused: takes away the file that Open has made, and folders, where no mission, failure or network
+  // has come into it. The store is closed then.
+  virtual void DiscardUnused() {}
 };
 
 }  // namespace ed3r::store

@@ -1,6 +1,8 @@
 // How fast and how large the store is, on as many rows as the paper's whole study: prints one line per
 // measure.
-//   build/bench/engine/store/store_bench [MISSIONS [TIMESTEPS [SHARDS]]]    with SHARDS it also merges as many stores
+//   build/bench/engine/store/store_bench [MISSIONS [TIMESTEPS]]
+//   build/bench/engine/store/store_bench MISSIONS TIMESTEPS SHARDS [DIR]    merges as many stores, and nothing else; with DIR
+//       they stay there, and are merged again by the next call
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -65,6 +67,12 @@ class ProcessorWatch {
  private:
   std::clock_t begin_ = std::clock();
 };
+
+double ThisThread_s() {
+  timespec time = {};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
+}
 
 void PrintChecksumShare(const RecordTables& tables, const RunLayout& layout,
                         const std::vector<mission::MissionRecord>& records, double puts_s) {
@@ -156,20 +164,28 @@ void Merge(const std::string& dir, const RunLayout& layout, int missions, int ti
   std::vector<std::string> dirs;
   for (int shard = 0; shard < shards; ++shard) {
     dirs.push_back(fmt::format("{}/shards/online/{:05}", dir, shard));
+    if (std::filesystem::exists(dirs.back())) continue;
     auto store = ResultStore::Open(dirs.back(), {}, layout);
     for (int i = shard; i < missions; i += shards)
       store->Put({0, 0, i}, Draw(static_cast<std::uint32_t>(i), timesteps), 1.0);
     store->Commit();
   }
+  std::filesystem::remove_all(dir + "/merged");
   const double before_mb = PeakMemory_mb();
-  const Stopwatch merge;
-  MergeStores(dir + "/merged", dirs);
-  fmt::print(
-      "merge of {:4} stores {:6.0f} missions/s ({:.2f} s, peak memory {:.0f} MB before, {:.0f} MB after)\n",
-      shards, missions / merge.Seconds(), merge.Seconds(), before_mb, PeakMemory_mb());
-  const Stopwatch again;
-  MergeStores(dir + "/merged", dirs);
-  fmt::print("merged again       {:8.0f} missions/s\n", missions / again.Seconds());
+  const auto timed = [&](const char* what) {
+    const Stopwatch wall;
+    const ProcessorWatch processor;
+    const double thread_before_s = ThisThread_s();
+    const MergeSummary summary = MergeStores(dir + "/merged", dirs);
+    fmt::print(
+        "{:<18} {:8.1f} s of processor time, {:.1f} s of it in the thread that puts, {:.1f} s of wall time "
+        "({} added, {} present)\n",
+        what, processor.Seconds(), ThisThread_s() - thread_before_s, wall.Seconds(), summary.added,
+        summary.present);
+  };
+  timed(fmt::format("merge of {} stores", shards).c_str());
+  fmt::print("peak memory        {:8.0f} MB before, {:.0f} MB after\n", before_mb, PeakMemory_mb());
+  timed("merged again");
   const Stopwatch tally;
   Tally all(layout);
   for (const std::string& store : dirs) all.Add(store);
@@ -186,8 +202,13 @@ int main(int argc, char** argv) {
   std::filesystem::remove_all(dir);
   const ed3r::store::RunLayout layout{
       .name = "bench", .seed = 1, .stages = {{.name = "s", .missions = missions, .arms = {{"a", 0}}}}};
-  ed3r::store::Write(dir.string(), layout, missions, timesteps);
-  ed3r::store::Read(dir.string(), 1.0 * missions * timesteps);
-  if (argc > 3) ed3r::store::Merge(dir.string(), layout, missions, timesteps, std::atoi(argv[3]));
+  if (argc > 4) {
+    ed3r::store::Merge(argv[4], layout, missions, timesteps, std::atoi(argv[3]));
+  } else if (argc > 3) {
+    ed3r::store::Merge(dir.string(), layout, missions, timesteps, std::atoi(argv[3]));
+  } else {
+    ed3r::store::Write(dir.string(), layout, missions, timesteps);
+    ed3r::store::Read(dir.string(), 1.0 * missions * timesteps);
+  }
   std::filesystem::remove_all(dir);
 }

@@ -26,11 +26,16 @@ constexpr int kSharedBusyTimeout_ms = 600 * 1000;
 
 std::string FileIn(const std::string& dir) { return (fs::path(dir) / kResultsFile).string(); }
 
-bool MakeDirectory(const std::string& dir) {
+// The first directory of the path that had to be made; "" where all was there.
+std::string MakeDirectory(const std::string& dir) {
   std::error_code error;
-  const bool created = fs::create_directories(dir, error);
+  fs::path missing;
+  for (fs::path path = fs::absolute(dir).lexically_normal(); !path.empty() && !fs::exists(path, error);
+       path = path.parent_path())
+    if (path.has_filename()) missing = path;
+  fs::create_directories(dir, error);
   if (error) throw UserError(fmt::format("{}: {}", dir, error.message()));
-  return created;
+  return missing.string();
 }
 
 // " (process 4711 on node3 since 2026-01-01T12:00:00Z)", as far as the file tells.
@@ -83,7 +88,7 @@ std::string CheckSameRun(Connection& database, const std::string& dir, const Rec
 StoreFile::StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout,
                      OtherCode other_code)
     : dir_(dir) {
-  created_dir_ = MakeDirectory(dir);
+  first_created_dir_ = MakeDirectory(dir);
   Lock();
   created_ = !fs::exists(FileIn(dir));
   try {
@@ -179,7 +184,14 @@ void StoreFile::Discard() {
   if (!created_) return;
   std::error_code ignored;
   for (const char* suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(FileIn(dir_) + suffix, ignored);
-  if (created_dir_) fs::remove(dir_, ignored);
+  lock_.reset();
+  owner_.reset();
+  if (first_created_dir_.empty()) return;
+  const fs::path end = fs::path(first_created_dir_).parent_path();
+  fs::path path = fs::absolute(dir_).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  for (; path != end && fs::remove(path, ignored); path = path.parent_path()) {
+  }
 }
 
 }  // namespace ed3r::store

@@ -37,8 +37,7 @@ class StoreFile {
   // StoreError once another writer has taken the directory over, which it does only when this one seemed dead.
   void CheckOwned() const;
 
-  // Takes away what this object created: the file, and the directory when it is empty then. For a merge into
-  // a new directory that is refused.
+  // Takes away what this object created: the file, and the directories that are empty then. For what is refused after all.
   void Discard();
 
  private:
@@ -48,7 +47,7 @@ class StoreFile {
   void OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code);
 
   std::string dir_;
-  bool created_dir_ = false;
+  std::string first_created_dir_;  // of the path that leads to the file; "" where all was there
   bool created_ = false;
   std::string grown_;
   bool rollback_journal_ = false;

@@ -1,5 +1,13 @@
 #include "engine/store/merge.h"
 
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <csignal>
+#include <memory>
+
+#include "engine/store/joined_missions.h"
+#include "engine/store/sqlite.h"
 #include "tests/store/store_fixture.h"
 
 namespace ed3r::store {
@@ -132,6 +140,89 @@ TEST_F(MergeTest, AFailureCountsOnlyWhereNobodyHasTheMission) {
   EXPECT_EQ(failures[0].message, "flown by shard 2");
   EXPECT_EQ(MergeStores(temp_ / "out", Shards()).failed, 0);
   EXPECT_EQ(DigestOfDir(temp_ / "out"), DigestOfDir(temp_ / "whole"));
+}
+
+// More than are read side by side, in any order, some missions in several of them.
+TEST_F(MergeTest, ManyStoresInAnyOrder) {
+  std::vector<std::string> stores;
+  for (int shard = 0; shard < 140; ++shard) {
+    stores.push_back(temp_ / fmt::format("many{}", shard));
+    WriteStore(stores.back(), Every(70, shard % 70));
+  }
+  const std::string whole = DigestOfDir(temp_ / "whole");
+  MergeSummary summary = MergeStores(temp_ / "out", stores);
+  EXPECT_EQ(summary.added, 100);
+  EXPECT_EQ(summary.present, 100);
+  EXPECT_EQ(DigestOfDir(temp_ / "out"), whole);
+  std::reverse(stores.begin(), stores.end());
+  summary = MergeStores(temp_ / "back", stores);
+  EXPECT_EQ(summary.added, 100);
+  EXPECT_EQ(DigestOfDir(temp_ / "back"), whole);
+  EXPECT_EQ(ResultReader(temp_ / "back").Sessions().size(), 140u);
+}
+
+TEST_F(MergeTest, ADamagedMissionOfAnyStoreIsRefused) {
+  MergeStores(temp_ / "out", {Shard(0)});
+  const std::string digest = DigestOfDir(temp_ / "out");
+  for (const char* harm : {"UPDATE timesteps SET scs = scs + 1 WHERE run = 2",
+                           "UPDATE missions SET total_j = total_j + 1 WHERE run = 3 AND mission = 3",
+                           "UPDATE missions SET checksum = steps_checksum WHERE run = 0 AND mission = 1"}) {
+    WriteStore(temp_ / "harmed", Every(3, 1));
+    {
+      Connection database(ResultsIn(temp_ / "harmed"), Connection::Access::kReadWrite);
+      database.Execute(harm);
+      ASSERT_GT(database.Int("SELECT changes()"), 0) << harm;
+    }
+    for (const char* out : {"out", "new"})
+      EXPECT_TRUE(Contains(UserErrorOf([&] {
+                             MergeStores(temp_ / out, {Shard(2), temp_ / "harmed", Shard(1)});
+                           }),
+                           "harmed/results.sqlite: stage"))
+          << harm;
+    EXPECT_EQ(DigestOfDir(temp_ / "out"), digest);
+    EXPECT_FALSE(fs::exists(temp_ / "new"));
+    fs::remove_all(temp_ / "harmed");
+  }
+}
+
+// Whenever it is: what was there is whole, and the same merge again completes it.
+TEST_F(MergeTest, AKilledMergeIsMadeAgain) {
+  const std::string whole = DigestOfDir(temp_ / "whole");
+  for (int moment = 0; moment < 16; ++moment) {
+    const std::string out = temp_ / fmt::format("killed{}", moment);
+    if (moment % 2 == 1) MergeStores(out, {Shard(0)});
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      MergeStores(out, Shards());
+      pause();
+    }
+    usleep(static_cast<useconds_t>(1500 * moment));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    if (moment % 2 == 1) {
+      EXPECT_TRUE(ResultReader(out).FindDamage().empty());
+    }
+    EXPECT_EQ(MergeStores(out, Shards()).failed, 0);
+    EXPECT_EQ(DigestOfDir(out), whole) << moment;
+  }
+}
+
+TEST_F(MergeTest, MissionsOfManyStoresComeInPlanOrder) {
+  std::vector<std::unique_ptr<ResultReader>> readers;
+  for (const std::string& dir : {Shard(2), temp_ / "whole", Shard(0)})
+    readers.push_back(std::make_unique<ResultReader>(dir));
+  JoinedMissions all(readers, 2);
+  std::vector<std::pair<sweep::RunId, std::size_t>> found;
+  while (const ComparedMission* mission = all.Next()) {
+    found.push_back({mission->id, all.source()});
+    EXPECT_EQ(DigestOf(mission->record), DigestOf(TestRecord(mission->id)));
+  }
+  EXPECT_EQ(all.Next(), nullptr);
+  EXPECT_EQ(found.size(), 100u + 67u);
+  EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
+  JoinedMissions left_alone(readers, 3);  // goes without having been asked for all
+  EXPECT_NE(left_alone.Next(), nullptr);
 }
 
 TEST_F(MergeTest, ADirectoryWithAWriterIsRefused) {

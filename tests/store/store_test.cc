@@ -59,6 +59,29 @@ TEST(StoreTest, AFinishedDirectoryIsOneFile) {
   EXPECT_EQ(Bytes(ResultsIn(temp / "run")), bytes);
 }
 
+TEST(StoreTest, WhatIsRefusedBeforeAnythingIsStoredLeavesNothing) {
+  const TempDir temp;
+  for (const char* kind : {"local", "shared"}) {
+    setenv("ED3R_STORE", kind, 1);
+    OpenTest(temp / "a/b/run")->DiscardUnused();
+    EXPECT_FALSE(fs::exists(temp / "a"));
+    fs::create_directory(temp / "mine");
+    OpenTest(temp / "mine/run/")->DiscardUnused();
+    EXPECT_TRUE(fs::is_empty(temp / "mine")) << "what was there before stays";
+    fs::remove(temp / "mine");
+  }
+  unsetenv("ED3R_STORE");
+  {
+    const auto store = OpenTest(temp / "run");
+    store->PutFailure({0, 0, 1}, {"exception", "it happens"});
+    store->DiscardUnused();
+    store->Commit();
+  }
+  EXPECT_EQ(ResultReader(temp / "run").Failures().size(), 1u);
+  OpenTest(temp / "run")->DiscardUnused();
+  EXPECT_TRUE(fs::exists(ResultsIn(temp / "run"))) << "it was not made now";
+}
+
 TEST(StoreTest, AMissionIsStoredOnce) {
   const TempDir temp;
   const auto store = OpenTest(temp / "run");
