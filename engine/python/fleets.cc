@@ -14,8 +14,6 @@
 namespace ed3r::python {
 namespace {
 
-constexpr std::size_t kMostRows = 1'000'000;
-
 // The plan of the one arm alone, in a stage of its own that waits for nothing, with its decisions from outside.
 sweep::SweepPlan PlanOfArm(sweep::SweepPlan plan, const std::string& name) {
   std::vector<std::string> names;
@@ -46,21 +44,40 @@ sweep::SweepPlan PlanOfArm(sweep::SweepPlan plan, const std::string& name) {
 }
 
 schedule::Autoreset AutoresetNamed(const std::string& name) {
-  constexpr std::array kNames = {std::pair{"next_step", schedule::Autoreset::kNextStep},
-                                 std::pair{"same_step", schedule::Autoreset::kSameStep},
-                                 std::pair{"disabled", schedule::Autoreset::kDisabled}};
+  constexpr std::array kNames = {std::pair{"NextStep", schedule::Autoreset::kNextStep},
+                                 std::pair{"SameStep", schedule::Autoreset::kSameStep},
+                                 std::pair{"Disabled", schedule::Autoreset::kDisabled}};
   for (const auto& [known, mode] : kNames)
     if (name == known) return mode;
   throw UserError(
-      fmt::format("autoreset_mode: '{}' is not allowed; allowed: next_step | same_step | disabled", name));
+      fmt::format("autoreset_mode: '{}' is not allowed; allowed: NextStep | SameStep | Disabled", name));
+}
+
+RowMissions MissionsOf(std::uint64_t seed, std::size_t row, std::size_t rows) {
+  return {seed, static_cast<std::int64_t>(row), static_cast<std::int64_t>(rows)};
 }
 
 }  // namespace
 
 void FleetHandle::Reset(std::span<const std::uint8_t> mask, std::optional<std::uint64_t> seed) {
-  ED3R_CHECK(plan != nullptr, "missions of a sweep begin by themselves");
-  if (seed) plan->seed = *seed;
-  fleet->Reset(mask, seed.has_value());
+  ED3R_CHECK(rows != nullptr, "missions of a sweep begin by themselves");
+  if (!seed) return fleet->Reset(mask);
+  for (std::size_t row = 0; row < rows->size(); ++row)
+    if (mask.empty() || mask[row] != 0) (*rows)[row] = MissionsOf(*seed, row, rows->size());
+  fleet->Reset(mask, std::vector<std::uint8_t>(rows->size(), 1));
+}
+
+void FleetHandle::ResetEach(std::span<const std::uint8_t> mask,
+                            std::span<const std::optional<std::uint64_t>> seeds) {
+  ED3R_CHECK(rows != nullptr, "missions of a sweep begin by themselves");
+  ED3R_CHECK(seeds.size() == rows->size(), "seeds of another number");
+  std::vector<std::uint8_t> from_first(rows->size());
+  for (std::size_t row = 0; row < rows->size(); ++row) {
+    if (!seeds[row] || (!mask.empty() && mask[row] == 0)) continue;
+    (*rows)[row] = {.seed = *seeds[row]};
+    from_first[row] = 1;
+  }
+  fleet->Reset(mask, from_first);
 }
 
 std::vector<double> FleetHandle::LargestCommand() const {
@@ -76,15 +93,21 @@ std::shared_ptr<FleetHandle> MakeFleet(const SweepRequest& request, const std::s
     throw UserError(fmt::format("num_envs: {} is not allowed; allowed: 1 .. {}", rows, kMostRows));
   const schedule::Autoreset mode = AutoresetNamed(autoreset);
   auto handle = std::make_shared<FleetHandle>();
-  handle->plan = std::make_shared<sweep::SweepPlan>(PlanOfArm(LoadRequest(request), arm));
+  handle->plan = std::make_shared<const sweep::SweepPlan>(PlanOfArm(LoadRequest(request), arm));
   handle->inputs = std::make_shared<const schedule::Inputs>(*handle->plan);
   const sweep::Arm& flown = handle->plan->stages.front().arms.front();
   handle->arm = flown.name;
   handle->config = flown.config;
-  const auto task = [plan = handle->plan, inputs = handle->inputs, rows](std::size_t row, std::int64_t nth) {
-    const sweep::RunId id{
-        0, 0, static_cast<int>(static_cast<std::int64_t>(row) + nth * static_cast<std::int64_t>(rows))};
-    return std::optional(schedule::TaskOf(*plan, *inputs, nullptr, id));
+  handle->rows = std::make_shared<std::vector<RowMissions>>();
+  for (std::size_t row = 0; row < rows; ++row)
+    handle->rows->push_back(MissionsOf(handle->plan->seed, row, rows));
+  const auto task = [plan = handle->plan, inputs = handle->inputs, of = handle->rows](std::size_t row,
+                                                                                      std::int64_t nth) {
+    const RowMissions& missions = (*of)[row];
+    const sweep::RunId id{0, 0, static_cast<int>(missions.first + nth * missions.stride)};
+    mission::MissionTask next = schedule::TaskOf(*plan, *inputs, nullptr, id);
+    next.seed = missions.seed;
+    return std::optional(next);
   };
   handle->fleet = std::make_shared<schedule::Fleet>(rows, task, threads, mode);
   return handle;

@@ -9,6 +9,7 @@
 #include <pybind11/stl.h>
 
 #include <atomic>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,12 +17,16 @@
 #include <utility>
 #include <vector>
 
+#include "engine/agents/execution_policy.h"
 #include "engine/core/check.h"
+#include "engine/python/argument_words.h"
 #include "engine/python/fleets.h"
 #include "engine/python/networks.h"
 #include "engine/python/results.h"
 #include "engine/python/sweeps.h"
 #include "engine/rfnn/features.h"
+#include "engine/schedule/scheduler.h"
+#include "engine/sweep/sweep_file.h"
 
 namespace py = pybind11;
 
@@ -98,6 +103,14 @@ void BindFleet(py::module_& module) {
             h.Reset(marks, seed);
           },
           py::arg("mask") = py::none(), py::arg("seed") = py::none())
+      .def("reset_each",
+           [](FleetHandle& h, const std::optional<Marks>& mask,
+              const std::vector<std::optional<std::uint64_t>>& seeds) {
+             std::span<const std::uint8_t> marks;
+             if (mask) marks = Values(*mask, h.fleet->rows(), 0, "reset_mask");
+             const py::gil_scoped_release release;
+             h.ResetEach(marks, seeds);
+           })
       .def("move",
            [](FleetHandle& h, const Floats& commands) {
              const auto values = Values(commands, h.fleet->rows(), schedule::kCommandValues, "commands");
@@ -172,7 +185,10 @@ void BindSweeps(py::module_& module) {
       .def(
           py::init<std::string, std::vector<std::string>, std::optional<std::uint64_t>, std::optional<int>>(),
           py::arg("file"), py::arg("settings"), py::arg("seed"), py::arg("missions"));
-  module.def("sweep_name", [](const SweepRequest& request) { return LoadRequest(request).name; });
+  module.def("sweep_outline", [](const SweepRequest& request) {
+    const sweep::SweepPlan plan = LoadRequest(request);
+    return std::pair(plan.name, OutsideArms(plan));
+  });
   module.def("fly",
              [](const SweepRequest& request, const std::string& out, const std::string& cache,
                 const std::string& identity, std::size_t rows, int threads, const py::function& drive) {
@@ -191,12 +207,23 @@ void BindSweeps(py::module_& module) {
 
 PYBIND11_MODULE(_core, module) {
   module.doc() = "The engine behind the package ed3r.";
-  py::register_exception<ed3r::UserError>(module, "UserError", PyExc_ValueError);
+  static const py::exception<ed3r::UserError> user_error(module, "UserError", PyExc_ValueError);
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const ed3r::UserError& error) {
+      PyErr_SetString(user_error.ptr(), ed3r::python::InPythonWords(error.what()).c_str());
+    }
+  });
   py::register_exception<ed3r::InternalError>(module, "InternalError", PyExc_RuntimeError);
   ed3r::python::BindNetworks(module);
   ed3r::python::BindSweeps(module);
   ed3r::python::BindFleet(module);
   ed3r::python::BindResults(module);
+  module.attr("most_envs") = ed3r::python::kMostRows;
+  module.attr("most_missions") = ed3r::sweep::kMaxMissions;
+  module.attr("most_threads") = ed3r::schedule::kMostThreads;
+  module.attr("executions") = ed3r::agents::kExecutions.size();
   module.attr("controller_features") = py::cast(std::vector<std::string>(
       ed3r::rfnn::kRcFeatures.begin(), ed3r::rfnn::kRcFeatures.begin() + ed3r::rfnn::kRcStates));
   module.attr("robot_features") = py::cast(std::vector<std::string>(

@@ -70,6 +70,16 @@ sweep::SweepPlan LoadRequest(const SweepRequest& request) {
   });
 }
 
+std::vector<std::string> OutsideArms(const sweep::SweepPlan& plan) {
+  std::vector<std::string> names;
+  for (const sweep::Stage& stage : plan.stages)
+    for (const sweep::Arm& arm : stage.arms)
+      if (arm.config.mission.strategy == agents::kOutsideStrategy &&
+          std::find(names.begin(), names.end(), arm.name) == names.end())
+        names.push_back(arm.name);
+  return names;
+}
+
 FlightCount FlyWithPolicy(const SweepRequest& request, const FlightPlace& place, const DriveFn& drive) {
   if (place.rows < 1) throw UserError("num_envs: 0 is not allowed; allowed: 1 or more");
   const sweep::SweepPlan plan = LoadRequest(request);

@@ -24,6 +24,9 @@ struct SweepRequest {
 // Throws UserError as 'ed3r run' does.
 sweep::SweepPlan LoadRequest(const SweepRequest& request);
 
+// The arms of strategy external, each once, in the plan's order.
+std::vector<std::string> OutsideArms(const sweep::SweepPlan& plan);
+
 struct FlightPlace {
   std::string out;              // run directory
   std::string cache;            // of trained networks

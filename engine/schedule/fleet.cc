@@ -103,11 +103,12 @@ void Fleet::ForEachRow(const std::function<void(std::size_t)>& body) {
     }
 }
 
-void Fleet::Reset(std::span<const std::uint8_t> mask, bool from_first) {
+void Fleet::Reset(std::span<const std::uint8_t> mask, std::span<const std::uint8_t> from_first) {
   ED3R_CHECK(mask.empty() || mask.size() == rows_.size(), "a mask of another size");
+  ED3R_CHECK(from_first.empty() || from_first.size() == rows_.size(), "marks of another size");
   ForEachRow([&](std::size_t row) {
     if (!mask.empty() && mask[row] == 0) return;
-    if (from_first) rows_[row].next = 0;
+    if (!from_first.empty() && from_first[row] != 0) rows_[row].next = 0;
     Begin(row);
   });
 }

@@ -64,8 +64,8 @@ class Fleet {
 
   std::size_t rows() const { return rows_.size(); }
 
-  // Begins the next mission of every row, or of those that `mask` marks. From the first one with `from_first`.
-  void Reset(std::span<const std::uint8_t> mask = {}, bool from_first = false);
+  // Begins the next mission of every row, or of those that `mask` marks; of those that `from_first` marks too, the first.
+  void Reset(std::span<const std::uint8_t> mask = {}, std::span<const std::uint8_t> from_first = {});
 
   // commands: rows x kCommandValues, executions: rows. Rows without a mission under way take no notice of theirs.
   // Throws UserError for a command that is not finite or an execution that is none, before anything moves; what a mission

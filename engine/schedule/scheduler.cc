@@ -19,7 +19,6 @@
 namespace ed3r::schedule {
 namespace {
 
-constexpr int kMostThreads = 4096;
 constexpr std::size_t kQueuedPerThread = 4;  // finished missions that may wait for the writer
 
 // Kinds are words, kept with the results: append, never rename.

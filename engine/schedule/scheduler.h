@@ -47,8 +47,10 @@ struct RunSummary {
   double simulated_s = 0;  // of the missions stored
 };
 
+inline constexpr int kMostThreads = 4096;
+
 // The number of threads that ScheduleOptions::threads stands for. UserError when it is negative or beyond
-// 4096.
+// kMostThreads.
 int ThreadsFor(int asked);
 
 // Flies `todo` in this order, threads taking turns. A mission that throws becomes a failed one and the rest

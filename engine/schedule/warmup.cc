@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/agents/strategy.h"
 #include "engine/core/check.h"
+#include "engine/sweep/setting.h"
 
 namespace ed3r::schedule {
 namespace {
@@ -34,6 +37,41 @@ std::set<std::string> TrainingsBehind(const sweep::SweepPlan& plan, const std::s
         Foundations(plan, stage).contains(flown))
       trainings.insert(stage.name);
   return trainings;
+}
+
+// Strategies that would ask the RC's network alone, or with `robot` the robot's alone, of the same training.
+std::string StrategiesThatAsk(const agents::Strategy& both, bool robot) {
+  std::vector<std::string_view> names;
+  for (const agents::Strategy& other : agents::Strategies())
+    if (other.networks == both.networks && other.motion.asks_network != robot &&
+        other.execution.asks_network == robot)
+      names.push_back(other.name);
+  return names.empty() ? ""
+                       : fmt::format(", a strategy that asks no such network ({})", fmt::join(names, " | "));
+}
+
+// Of an arm that asks networks where nothing trains them: which ones, and what would give them.
+std::string WhatIsMissing(const sweep::Arm& learner) {
+  const agents::Strategy& strategy = agents::FindStrategy(learner.config.mission.strategy);
+  const auto lacks = [](bool asked, const char* key, const std::string& file) {
+    return asked && file == sweep::FileNotNeeded(key);
+  };
+  const bool rc = lacks(strategy.motion.asks_network, "networks.rc", learner.config.networks.rc);
+  const bool robot = lacks(strategy.execution.asks_network, "networks.robot", learner.config.networks.robot);
+  const std::string training = fmt::format(
+      "a training stage ('kind: train') that comes after a stage with strategy {}", SourceOf(learner));
+  const bool both_asked = strategy.motion.asks_network && strategy.execution.asks_network;
+  if (rc == robot || !both_asked)
+    return fmt::format("asks networks, so the stage must come after {}; or give {}", training,
+                       both_asked ? "networks.rc and networks.robot"
+                       : rc       ? "networks.rc"
+                                  : "networks.robot");
+  const char* missing = rc ? "networks.rc" : "networks.robot";
+  return fmt::format(
+      "has {} from a file, but strategy {} asks the {} network too, and nothing trains it; "
+      "allowed: {}: FILE.onnx{}, or, before this stage, {}",
+      rc ? "networks.robot" : "networks.rc", strategy.name, rc ? "RC's" : "robot's", missing,
+      StrategiesThatAsk(strategy, rc), training);
 }
 
 }  // namespace
@@ -65,11 +103,7 @@ WarmupPart PartOf(const sweep::SweepPlan& plan, const WarmupChoice& warmup, cons
 void CheckWarmup(const sweep::SweepPlan& plan, const sweep::Stage& stage, const sweep::Arm& learner) {
   const WarmupChoice choice = ChooseWarmup(plan, stage, learner);
   const std::string who = fmt::format("{}: stage {}: arm {}", plan.file, stage.name, learner.name);
-  if (!choice)
-    throw UserError(
-        fmt::format("{} asks networks, so the stage must come after a training stage ('kind: train') that "
-                    "comes after a stage with strategy {}",
-                    who, SourceOf(learner)));
+  if (!choice) throw UserError(fmt::format("{} {}", who, WhatIsMissing(learner)));
   const sweep::Stage& warmup = plan.stages[static_cast<std::size_t>(choice.stage)];
   const TrainingConfig& training = learner.config.training;
   if (!training.own_warmups) return;

@@ -9,9 +9,12 @@
 #include "studies/report/page_style.h"
 #include "studies/tables/layout.h"
 #include "studies/tables/paper_cell.h"
+#include "studies/variants/difference_text.h"
 
 namespace ed3r::report {
 namespace {
+
+constexpr int kDifferenceDecimals = 2;
 
 // One fact of the list at the top.
 std::string Fact(std::string_view name, const std::string& value) {
@@ -102,6 +105,31 @@ std::string TableKey() {
          "it lies in our interval, give or take its rounding. Small numbers beside an arm: missions.</p>\n";
 }
 
+// Each arm of a stage minus one of them; "" where the verdicts compare all.
+std::string DifferencesHtml(const std::vector<variants::ArmDifference>& differences) {
+  if (differences.empty()) return "";
+  std::string html =
+      "<h3 id=\"differences\">Arms compared</h3>\n<div "
+      "class=\"wide\"><table>\n<tr><th></th><th>minus</th><th>metric</th>"
+      "<th>difference</th><th>p</th><th>pairs</th></tr>\n";
+  for (const variants::ArmDifference& d : differences) {
+    const std::size_t metric = metrics::MetricIndex(d.metric);
+    const char* mark = d.Certain() ? "b" : "span";
+    html += fmt::format(
+        "<tr><th>{}</th><td>{}</td><td>{}</td><td><{}>{}</{}><i>{} to "
+        "{}</i></td><td>{}</td><td>{}</td></tr>\n",
+        HtmlText(d.arm), HtmlText(d.minus), HtmlText(tables::MetricHeading(metric)), mark,
+        tables::FormatValue(d.difference, kDifferenceDecimals), mark,
+        tables::FormatValue(d.lo, kDifferenceDecimals), tables::FormatValue(d.hi, kDifferenceDecimals),
+        HtmlText(variants::PText(d.p_holm)), d.pairs);
+  }
+  return html +
+         "</table></div>\n<p class=\"key\">Paired by scenario, <i>95 % interval</i>; p after Holm's "
+         "correction for all of "
+         "them, <b>bold</b> below 0.05 unless a single trained network flew on a side. <a "
+         "href=\"differences.csv\">differences.csv</a></p>\n";
+}
+
 std::string FiguresHtml(const PageInputs& inputs) {
   std::string html = "<section id=\"figures\"><h2>Figures</h2>\n";
   if (!inputs.figures_note.empty()) html += "<p class=\"note\">" + HtmlText(inputs.figures_note) + "</p>\n";
@@ -163,7 +191,7 @@ std::string ReportContent(const PageInputs& inputs) {
   if (report.tables.empty())
     html += "<p class=\"note\">No missions yet.</p>\n";
   else
-    html += TableHtml(report.tables.front()) + TableKey();
+    html += TableHtml(report.tables.front()) + TableKey() + DifferencesHtml(report.differences);
   html += "</section>\n" + VerdictSection(report.claims);
   html += "<section id=\"tables\"><h2>Tables</h2>\n";
   for (std::size_t t = 1; t < report.tables.size(); ++t) html += TableHtml(report.tables[t]);

@@ -208,6 +208,7 @@ Json MakePageData(const PageDataInputs& inputs) {
   data["known_sites"] = KnownSites(inputs.missions.arms);
   data["broken"] = inputs.broken;
   data["claims"] = ClaimsJson(report.claims);
+  data["differences"] = variants::ArmDifferenceJson(report.differences);
   data["tables"] = Json::array();
   for (const tables::StudyTable& table : report.tables) data["tables"].push_back(TableJson(table));
   for (const char* part : {"world", "world_note", "missions_shown", "variants", "figures"})

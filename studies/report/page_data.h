@@ -36,7 +36,7 @@ struct PageDataInputs {
 };
 
 // {"format", "name", "question", "answer": [sentences], "departures": [sentences], "metrics", "arms", "slices", "histograms", "points", "failures",
-// "known_sites", "broken", "claims", "tables", "world", "missions_shown", "variants", "figures", "run": provenance for people,
+// "known_sites", "broken", "claims", "differences", "tables", "world", "missions_shown", "variants", "figures", "run": provenance for people,
 // "viewers", "viewers_note"}; parts as in page_slices.h and figure_data.h. Pure.
 nlohmann::ordered_json MakePageData(const PageDataInputs& inputs);
 

@@ -7,6 +7,7 @@
 
 #include "engine/core/file.h"
 #include "studies/claims/verdict_tables.h"
+#include "studies/paper/arms.h"
 #include "studies/paper/claims.h"
 #include "studies/tables/data_files.h"
 #include "studies/tables/layout.h"
@@ -45,6 +46,18 @@ claims::ClaimStudy ClaimsOf(const Report& report, const std::vector<metrics::Arm
   return unjudged;
 }
 
+// The arms of the stages that no verdicts compare: with an arm that the paper does not have, or any where none are judged.
+std::vector<metrics::ArmData> Uncompared(const claims::ClaimStudy& claims,
+                                         const std::vector<metrics::ArmData>& arms) {
+  std::vector<metrics::ArmData> uncompared;
+  for (const metrics::ArmData& arm : arms)
+    if (claims.claims.empty() || std::any_of(arms.begin(), arms.end(), [&](const metrics::ArmData& other) {
+          return other.stage == arm.stage && paper::FindPaperArm(other.name) == nullptr;
+        }))
+      uncompared.push_back(arm);
+  return uncompared;
+}
+
 }  // namespace
 
 std::string Report::Variant() const { return variants.variants.empty() ? "" : variants.variants.front(); }
@@ -75,6 +88,7 @@ Report MakeReport(const RunResults& results, const RunDepartures& departures, Ju
   }
   if (!variants) report.told = report.arms;
   report.claims = ClaimsOf(report, arms);
+  report.differences = variants::CompareArms(Uncompared(report.claims, arms));
   report.convergence = claims::Convergence(arms);
   report.look_forward = tables::LookForwardOf(arms);
   report.tables = tables::MakeStudyTables(report.told, p85);
@@ -98,6 +112,8 @@ std::string ReportText(const Report& report) {
   if (!generalisation.empty()) text += '\n' + generalisation;
   const std::string look_forward = tables::LookForwardText(report.look_forward);
   if (!look_forward.empty()) text += '\n' + look_forward;
+  const std::string differences = variants::ArmDifferenceText(report.differences);
+  if (!differences.empty()) text += '\n' + differences;
   const std::string verdicts = claims::VerdictText(report.claims);
   if (!verdicts.empty()) text += '\n' + verdicts;
   const std::string variants = variants::VariantText(report.variants);
@@ -113,6 +129,7 @@ nlohmann::ordered_json ReportJson(const Report& report) {
   json.update(tables::ResultJson(report.arms, paper::PaperClaims()));
   json["generalisation"] = tables::GeneralisationJson(report.generalisation);
   json["look_forward"] = tables::LookForwardJson(report.look_forward);
+  json["differences"] = variants::ArmDifferenceJson(report.differences);
   json["claims"] = claims::VerdictJson(report.claims);
   return json;
 }
@@ -128,6 +145,8 @@ void WriteReport(const Report& report, const std::string& dir) {
   if (report.claims.networks > 1) WriteFile(base / "by_network.csv", claims::ByNetworkCsv(report.claims));
   WriteFile(base / "convergence.csv", claims::ConvergenceCsv(report.convergence));
   WriteFile(base / "look_forward.csv", tables::LookForwardCsv(report.look_forward));
+  if (!report.differences.empty())
+    WriteFile(base / "differences.csv", variants::ArmDifferenceCsv(report.differences));
   if (!report.variants.variants.empty()) {
     WriteFile(base / "variants.csv", variants::DifferenceCsv(report.variants));
     WriteFile(base / "variant_verdicts.csv", variants::VariantVerdictCsv(report.variants));

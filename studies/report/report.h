@@ -14,6 +14,7 @@
 #include "studies/tables/look_forward_table.h"
 #include "studies/tables/result_table.h"
 #include "studies/tables/study_table.h"
+#include "studies/variants/arm_differences.h"
 #include "studies/variants/variants.h"
 
 namespace ed3r::report {
@@ -36,7 +37,8 @@ struct Report {
   std::vector<metrics::ArmMetrics> told;
   std::vector<tables::Generalisation> generalisation;  // one per arm told
   std::vector<tables::StudyTable> tables;              // for papers and pages
-  claims::ClaimStudy claims;  // without any where what is told departs from the paper
+  claims::ClaimStudy claims;                         // without any where what is told departs from the paper
+  std::vector<variants::ArmDifference> differences;  // of the arms told, in stages that no verdicts compare
   variants::VariantStudy variants;
   std::vector<claims::ConvergencePoint> convergence;  // of the arms told
   std::vector<tables::LookForward> look_forward;      // of the arms told that ask a network
@@ -50,15 +52,16 @@ struct Report {
 Report MakeReport(const RunResults& results, const RunDepartures& departures,
                   Judging judging = Judging::kWhatThePaperFlew);
 
-// For a terminal of kTerminalWidth characters: heading, departures from the paper, result table, generalisation table, look-forward errors, verdicts on
-// the claims.
+// For a terminal of kTerminalWidth characters: heading, departures from the paper, result table, generalisation table, look-forward errors, differences of
+// the arms, verdicts on the claims.
 std::string ReportText(const Report& report);
 
-// {"name", "paper": as DeparturesJson, "arms": as ResultJson, "generalisation": as GeneralisationJson, "claims": as VerdictJson}.
+// {"name", "paper": as DeparturesJson, "arms": as ResultJson, "generalisation": as GeneralisationJson, "differences": as
+// ArmDifferenceJson, "claims": as VerdictJson}.
 nlohmann::ordered_json ReportJson(const Report& report);
 
 // Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv, convergence.csv, look_forward.csv, where several networks flew
-// by_network.csv, where there are variants variants.csv and variant_verdicts.csv, and tables/ID.md, .tex, .csv and .json of each table into `dir`, which it makes
+// by_network.csv, where arms are compared differences.csv, where there are variants variants.csv and variant_verdicts.csv, and tables/ID.md, .tex, .csv and .json of each table into `dir`, which it makes
 // if it has to; each file is replaced whole or left as it was. Throws UserError when it cannot.
 void WriteReport(const Report& report, const std::string& dir);
 

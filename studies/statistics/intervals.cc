@@ -47,6 +47,19 @@ Ratio Linearise(std::span<const double> part, std::span<const double> whole) {
   return ratio;
 }
 
+struct MeanAndError {
+  double mean, standard_error;
+};
+
+// Of a sample of at least two.
+MeanAndError MeanOf(std::span<const double> sample) {
+  const double n = static_cast<double>(sample.size());
+  const double mean = std::accumulate(sample.begin(), sample.end(), 0.0) / n;
+  double squares = 0;
+  for (const double x : sample) squares += (x - mean) * (x - mean);
+  return {mean, std::sqrt(squares / (n - 1) / n)};
+}
+
 // Wilson's interval of a proportion seen in `size` trials, which need not be whole.
 Interval Wilson(double proportion, double size, double quantile) {
   const double q2 = quantile * quantile;
@@ -66,14 +79,24 @@ double StudentT95(double degrees) {
   return boost::math::quantile(boost::math::complement(boost::math::students_t(degrees), kTail));
 }
 
+double StudentP(double t, double degrees) {
+  ED3R_CHECK(degrees > 0, "Student's t needs a degree of freedom");
+  return 2 * boost::math::cdf(boost::math::complement(boost::math::students_t(degrees), std::abs(t)));
+}
+
 Interval MeanInterval(std::span<const double> sample) {
   if (sample.size() < 2) return {};
-  const double n = static_cast<double>(sample.size());
-  const double mean = std::accumulate(sample.begin(), sample.end(), 0.0) / n;
-  double squares = 0;
-  for (const double x : sample) squares += (x - mean) * (x - mean);
-  const double half = StudentT95(n - 1) * std::sqrt(squares / (n - 1) / n);
+  const auto [mean, error] = MeanOf(sample);
+  const double half = StudentT95(static_cast<double>(sample.size() - 1)) * error;
   return {mean - half, mean + half};
+}
+
+double MeanP(std::span<const double> sample) {
+  if (sample.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+  if (std::all_of(sample.begin(), sample.end(), [&](double x) { return x == sample.front(); }))
+    return sample.front() == 0 ? 1 : std::exp2(1 - static_cast<double>(sample.size()));
+  const auto [mean, error] = MeanOf(sample);
+  return StudentP(mean / error, static_cast<double>(sample.size() - 1));
 }
 
 Interval RateInterval(std::int64_t events, std::int64_t trials) {

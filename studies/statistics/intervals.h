@@ -27,11 +27,18 @@ struct Interval {
 // The two-sided 95 % quantile of Student's t; degrees > 0.
 double StudentT95(double degrees);
 
+// The two-sided p-value of a value of Student's t; degrees > 0.
+double StudentP(double t, double degrees);
+
 // Mean of a sample: Student's t. Mission energies are skewed, with a lump at the battery's capacity, and t
 // still does what the bootstrap does: over three synthetic arms of 850 missions it covered 94.5-96.0 %
 // (percentile bootstrap 94.2-95.3, bootstrap-t 94.0-96.3). At 20 missions it covers 88-92 % (percentile
 // 85-92); bootstrap-t reaches 91-97 there, with intervals 2.5-8 times as wide at 5 missions.
 Interval MeanInterval(std::span<const double> sample);
+
+// The p-value of "the mean of what was drawn from is 0" that goes with MeanInterval; NaN under two. A sample of one value
+// throughout tells t nothing of the spread: then the sign test's, 2^(1 - n), or 1 where that value is 0.
+double MeanP(std::span<const double> sample);
 
 // Rate of a yes-or-no event, `events` out of `trials` independent missions: Wilson's score interval.
 Interval RateInterval(std::int64_t events, std::int64_t trials);

@@ -6,8 +6,8 @@
 
 #include "engine/core/csv_table.h"
 #include "studies/claims/verdict_tables.h"
-#include "studies/metrics/definitions.h"
 #include "studies/tables/layout.h"
+#include "studies/variants/difference_text.h"
 #include "studies/variants/variants.h"
 
 namespace ed3r::variants {
@@ -16,27 +16,14 @@ namespace {
 constexpr int kArmWidth = 14, kVariantWidth = 26, kCellWidth = 26;
 constexpr int kIdWidth = 5, kFewestWords = 24, kMostWords = 60;
 
-std::string CellText(const VariantDifference& d) {
-  if (std::isnan(d.difference)) return "–";
-  return fmt::format("{:+.1f}{} [{:+.1f}, {:+.1f}]", d.difference,
-                     d.Certain()      ? "*"
-                     : d.OneNetwork() ? "?"
-                                      : "",
-                     d.lo, d.hi);
-}
-
 std::string DifferenceTable(const VariantStudy& study) {
-  const auto heading = [](const char* metric) {
-    const metrics::MetricDefinition& definition = metrics::MetricDefinitions()[metrics::MetricIndex(metric)];
-    return fmt::format("{}, {}", definition.label, definition.unit);
-  };
   std::string text =
       fmt::format("Variants minus '{}', {} (* interval without 0)\n", study.variants[0],
                   study.same_draws ? "paired by scenario" : "of other seeds: other draws at the same places");
   text += tables::Pad("arm", kArmWidth, tables::Align::kLeft) +
           tables::Pad("variant", kVariantWidth, tables::Align::kLeft);
   for (const char* metric : kComparedMetrics)
-    text += tables::Pad(heading(metric), kCellWidth, tables::Align::kRight);
+    text += tables::Pad(DifferenceHeading(metric), kCellWidth, tables::Align::kRight);
   text += fmt::format("\n{}\n", tables::Rule(tables::kTerminalWidth));
   constexpr std::size_t kMetrics = std::size(kComparedMetrics);
   for (std::size_t i = 0; i < study.differences.size(); i += kMetrics) {
@@ -44,13 +31,13 @@ std::string DifferenceTable(const VariantStudy& study) {
     text += tables::Pad(first.arm, kArmWidth, tables::Align::kLeft) +
             tables::Pad(first.variant, kVariantWidth, tables::Align::kLeft);
     for (std::size_t m = 0; m < kMetrics; ++m)
-      text += tables::Pad(CellText(study.differences[i + m]), kCellWidth, tables::Align::kRight);
+      text += tables::Pad(DifferenceCell(study.differences[i + m], study.differences[i + m].Certain()),
+                          kCellWidth, tables::Align::kRight);
     text += "\n";
   }
   if (std::any_of(study.differences.begin(), study.differences.end(),
                   [](const VariantDifference& d) { return d.OneNetwork(); }))
-    text += tables::Wrap("one trained network on a side: the luck of training is not in the interval.", "? ",
-                         tables::kTerminalWidth);
+    text += tables::Wrap(kOneNetworkNote, "? ", tables::kTerminalWidth);
   const auto intervals = std::count_if(study.differences.begin(), study.differences.end(),
                                        [](const auto& d) { return !std::isnan(d.lo) && !d.OneNetwork(); });
   const auto stars = std::count_if(study.differences.begin(), study.differences.end(),

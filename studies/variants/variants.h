@@ -11,25 +11,13 @@
 
 #include "studies/claims/verdicts.h"
 #include "studies/metrics/arm.h"
+#include "studies/variants/paired.h"
 
 namespace ed3r::variants {
 
-// Metrics whose differences are told.
-inline constexpr const char* kComparedMetrics[] = {"total_energy_kj", "msr_pct", "duration_mean_min"};
-
-// One metric of one arm in a variant minus the same in the first variant: mean over scenarios that both flew, with a 95 %
-// interval (Student's t). Where both flew the same number of trained networks, more than one, it is at least as wide as t over
-// the networks' own differences; where they flew different numbers, as Welch's t between the two sets of networks. With a
-// single network on either side the luck of training is not in the interval, and Certain() never holds.
-struct VariantDifference {
+// Of one arm, in a variant minus the same in the first variant.
+struct VariantDifference : PairedDifference {
   std::string arm, variant, metric;
-  double base = 0.0;  // the metric's mean in the first variant, over the pairs
-  double difference = 0.0, lo = 0.0, hi = 0.0;
-  int pairs = 0;
-  int base_networks = 0, networks = 0;  // trained ones that flew the pairs; 0 for an arm that asks none
-
-  bool OneNetwork() const { return base_networks == 1 || networks == 1; }
-  bool Certain() const { return (lo > 0.0 || hi < 0.0) && !OneNetwork(); }
 };
 
 // A claim of the paper that is judged otherwise than in the first variant.

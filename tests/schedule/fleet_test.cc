@@ -145,6 +145,16 @@ TEST_F(FleetTest, DisabledWaitsForAReset) {
   EXPECT_EQ(fleet->Now().mission[1], other);
 }
 
+TEST_F(FleetTest, RowsBeginFromTheirFirstMissionByThemselves) {
+  const auto fleet = TwoRows(Autoreset::kDisabled);
+  fleet->Reset();
+  EXPECT_EQ(fleet->Now().mission, (std::vector<std::int64_t>{2, 3}));
+  fleet->Reset({}, std::vector<std::uint8_t>{0, 1});
+  EXPECT_EQ(fleet->Now().mission, (std::vector<std::int64_t>{4, 1}));
+  fleet->Reset(std::vector<std::uint8_t>{1, 0}, std::vector<std::uint8_t>{1, 1});
+  EXPECT_EQ(fleet->Now().mission, (std::vector<std::int64_t>{0, 1}));
+}
+
 TEST_F(FleetTest, WrongActionsAreRefusedBeforeAnythingMoves) {
   const auto fleet = TwoRows(Autoreset::kNextStep);
   std::vector<float> commands(2 * kCommandValues);

@@ -88,9 +88,23 @@ TEST_F(OwnNetworksTest, TheyFlyAsTheNetworksThatWereExported) {
 
 TEST_F(OwnNetworksTest, WhatIsMissingIsSaid) {
   EXPECT_EQ(RefusalOf("strategy: ablation-2, networks.rc: rc.onnx"), "accepted");  // its robot has no choice
+  const std::string no_robot = RefusalOf("strategy: ed3r, networks.rc: rc.onnx");
+  EXPECT_NE(no_robot.find(
+                "has networks.rc from a file, but strategy ed3r asks the robot's network too, and "
+                "nothing trains it; allowed: networks.robot: FILE.onnx, a strategy that asks no such "
+                "network (ablation-1 | ablation-2 | ablation-4), or, before this stage, a training stage"),
+            std::string::npos)
+      << no_robot;
+  const std::string no_rc = RefusalOf("strategy: ed3r, networks.robot: robot.onnx");
   EXPECT_NE(
-      RefusalOf("strategy: ed3r, networks.rc: rc.onnx").find("asks networks, so the stage must come after"),
-      std::string::npos);
+      no_rc.find(
+          "asks the RC's network too, and nothing trains it; allowed: networks.rc: FILE.onnx, or, before"),
+      std::string::npos)
+      << no_rc;
+  const std::string neither = RefusalOf("strategy: ed3r");
+  EXPECT_NE(neither.find("asks networks, so the stage must come after a training stage"), std::string::npos);
+  EXPECT_NE(neither.find("or give networks.rc and networks.robot"), std::string::npos) << neither;
+  EXPECT_NE(RefusalOf("strategy: ablation-2").find("or give networks.rc"), std::string::npos);
   EXPECT_NE(RefusalOf("strategy: rbs, networks.rc: rc.onnx").find("strategy rbs asks no such network"),
             std::string::npos);
   const std::string refusal = RefusalOf("strategy: ablation-2, networks.rc: robot.onnx");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <vector>
 
@@ -41,6 +42,26 @@ TEST(RateIntervalTest, EndsExactlyAtZeroAndOne) {
 }
 
 // Sleep gained by ten patients, Student's own data (Biometrika 6, 1908, column "2"): 2.33 +- 1.432.
+// With two degrees of freedom the two-sided p of t is 1 - t / sqrt(t^2 + 2).
+TEST(MeanPTest, IsStudents) {
+  EXPECT_NEAR(statistics::StudentP(-2, 2), 1 - 2 / std::sqrt(6.0), 1e-12);
+  EXPECT_NEAR(statistics::MeanP(Sample{1, 2, 3}), 1 - std::sqrt(12.0 / 14.0), 1e-12);
+  EXPECT_NEAR(statistics::MeanP(Sample{-1, 0, 1}), 1, 1e-12);
+  // What 95 % intervals leave out has a p below 5 %.
+  const Sample edge = {0.0, 1.0, 2.0, 3.0, 4.0};
+  for (const double shift : {-0.04, -0.03}) {
+    Sample moved = edge;
+    for (double& x : moved) x += shift;
+    EXPECT_EQ(statistics::MeanInterval(moved).lo > 0, statistics::MeanP(moved) < 0.05) << shift;
+  }
+}
+
+TEST(MeanPTest, ASampleWithoutSpreadHasASignOnly) {
+  EXPECT_EQ(statistics::MeanP(Sample{3, 3, 3}), 0.25);
+  EXPECT_EQ(statistics::MeanP(Sample{0, 0}), 1);
+  EXPECT_TRUE(std::isnan(statistics::MeanP(Sample{3})));
+}
+
 TEST(MeanIntervalTest, IsStudents) {
   const Sample sleep = {1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};
   ExpectInterval(statistics::MeanInterval(sleep), 0.8976775, 3.7623225, 1e-6);

@@ -16,7 +16,7 @@ QUANTIZED: int
 """2: detection on board with the Quantized model."""
 
 class UserError(ValueError):
-    """Bad input, in one line: where, what was found, what is allowed."""
+    """Bad input or a call out of turn, in one line: where, what was found, what is allowed or to be called first."""
 
 class InternalError(RuntimeError):
     """A defect of the engine, not of its input."""
@@ -33,7 +33,9 @@ class VectorEnv:
 
     A timestep has the paper's two stages. `step` takes both decisions at once; `move` and then `detect` take them one
     after the other, so that the second knows what the robot sees after the move. step(a) is move(a[:, :5]) and then
-    detect(floor(a[:, 5])).
+    detect(floor(clip(a[:, 5], 0, 2))): an action is numbers of a Box, which are cut to what is allowed; an execution
+    given to detect is one of three codes, as of a Discrete space, and any other is refused. Commands are cut to the ranges in
+    force in either way. What is not finite is refused.
 
     observation  float32 (N, 8), what the remote controller sees, raw (`controller_features`): x_m, y_m, z_m (east, north,
                  up, of the world), yaw_rad (0 east, counter-clockwise), tilt_rad (camera below the horizon), rc_distance_m,
@@ -55,17 +57,20 @@ class VectorEnv:
     hovers, ranges (N, 3: largest |dx|, |dy|, |dz| in m; largest |turn| in rad; width of the tilt interval in rad).
 
     Autoreset as Gymnasium defines it. NEXT_STEP: the step after the end begins the row's next mission and flies nothing
-    (reward 0, its mask is False). SAME_STEP: the step that ends a mission begins the next; infos["final_obs"] and
-    infos["final_info"] hold the end, with masks. DISABLED: the row waits for reset(options={"reset_mask": mask});
-    until then a step flies nothing in it and repeats its last values: leave such rows out.
+    (reward 0, the masks of its step are False). SAME_STEP: the step that ends a mission begins the next; its reward and
+    terminated are of the end, observation and infos of the new mission (the masks of a step are False); the end is in
+    infos["final_obs"], an object array (N,) of arrays (8,) or None, and infos["final_info"], the dict of the step's infos
+    with their masks, mission and timestep. DISABLED: the row waits for reset(options={"reset_mask": terminated | truncated});
+    to step it before is refused.
 
     Row i flies missions i, i + N, i + 2N, ... of the arm: a mission depends on sweep, seed, number and actions alone, not on
     N, threads, or what the other rows do. The interpreter lock is released while missions fly; one thread uses an
     environment at a time.
 
     sweep: path of a sweep file. arm: "ARM" or "STAGE/ARM", not needed where there is one; its world and parameters count, its
-    strategy does not. seed: in place of the file's. settings: ["key=value", ...] as 'ed3r run --set'. threads: 0 for all
-    processors. copy: False hands out views of the engine's memory, read-only and overwritten by the next step.
+    strategy does not. seed: in place of the file's. autoreset_mode: Gymnasium's, or its name ("NextStep", "SameStep",
+    "Disabled"). settings: ["key=value", ...] as 'ed3r run --set'. threads: 0 for all processors.
+    copy: False hands out views of the engine's memory, read-only and overwritten by the next step.
     """
 
     num_envs: int
@@ -81,18 +86,24 @@ class VectorEnv:
     def __init__(self, sweep: str | os.PathLike[str], arm: str = "", num_envs: int = 1, seed: int | None = None, *,
                  autoreset_mode: AutoresetMode | str = ..., threads: int = 0, settings: Sequence[str] = (),
                  copy: bool = True) -> None: ...
-    def reset(self, *, seed: int | None = None,
+    def reset(self, *, seed: int | Sequence[int | None] | None = None,
               options: Mapping[str, Any] | None = None) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begins the next mission of every row, or of those in options["reset_mask"]; with a seed, that seed's first ones."""
+        """Begins the next mission of every row, or of those in options["reset_mask"], a boolean array (N,).
+
+        seed, a number: row i begins at mission i of that seed, and goes on to i + N, ... A list of N: row i begins at mission 0 of
+        seed[i], and goes on to 1, 2, ...; equal seeds are equal missions; None: the row goes on as without a seed. Seeds are
+        0 .. 2**64 - 1 and count for the rows that begin.
+        """
     def step(self, actions: ArrayLike) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_],
                                                 NDArray[np.bool_], dict[str, Any]]:
         """One timestep: observations (N, 8), rewards, terminations, truncations (N,), infos."""
     def move(self, commands: ArrayLike) -> NDArray[np.float32]:
-        """Stage 1: flies commands (N, 5); returns robot_obs (N, 9)."""
+        """Stage 1: flies commands (N, 5); returns robot_obs (N, 9). Once in a timestep, before detect."""
     def detect(self, executions: ArrayLike) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_],
                                                      NDArray[np.bool_], dict[str, Any]]:
-        """Stage 2: executions (N,) of 0, 1, 2; returns what step returns."""
-    def close(self) -> None: ...
+        """Stage 2, after move: executions (N,) of 0, 1, 2; returns what step returns."""
+    def close(self, **kwargs: Any) -> None:
+        """Lets go of the missions; a second time it does nothing. Every other call is then refused."""
 
 class TwoStagePolicy(Protocol):
     """The two decisions of a timestep, one after the other."""
@@ -109,11 +120,11 @@ def fly(sweep: str | os.PathLike[str], policy: Policy | Mapping[str, Policy] | N
     """Flies what is missing of a sweep, as 'ed3r run' does; its arms of `strategy: external` decide by `policy`, which others
     do not need.
 
-    policy(obs, info) gets obs (n, 8) and info of n <= num_envs missions and returns actions (n, 6), as of VectorEnv. info:
+    policy(obs, info) gets obs (n, 8) and info of n <= num_envs missions and returns actions (n, 6), cut as by VectorEnv.step. info:
     mission, timestep, hovers, scs, total_j, battery_j (n,), ranges (n, 3). Missions come and go between calls: what a policy
     remembers must hang on info["mission"], and what it draws on mission and timestep, or results depend on num_envs. An
-    object with move(obs, info) -> (n, 5) and detect(robot_obs, info) -> (n,) decides in two stages; a dict gives one policy
-    to each arm.
+    object with move(obs, info) -> (n, 5) and detect(robot_obs, info) -> (n,) of codes 0, 1, 2 decides in two stages; a dict gives
+    one policy to each arm of strategy external.
 
     Results go to `out` (results/runs/SWEEP) as ordinary missions: reports, pairing by scenario and comparisons know no
     difference. A second call continues; by another policy it is refused. `version` tells policies apart; without it the
@@ -145,11 +156,37 @@ class Run:
 
     def __init__(self, dir: str | os.PathLike[str]) -> None: ...
     def missions(self, arm: str = "", *, frame: bool = False) -> Any:
-        """One row a mission, of one arm ("ARM", "STAGE/ARM") or all: {"arm", "mission", "scenario", "outcome", "total_j",
-        "duration_s", ...: array}; units are in the names. frame: as a pandas.DataFrame."""
+        """One row a mission, of one arm ("ARM", "STAGE/ARM") or all: {column: array (n,)}, or a pandas.DataFrame of n rows.
+
+        text      arm
+        int64     mission (its number in the arm); scenario (missions of one number meet the same fire, start, radio and CPU in
+                  every arm); site, base_station; network (training seed, -1 without); site_known, base_station_known (1: seen
+                  by the warm-up); outcome (codes["outcome"]); timesteps; contact_steps (physics steps with a collision); halts
+                  (by the LiDARs); reliable_timesteps (score >= eta_min); offloads, full_local, quantized_local (looks);
+                  random_motions; predicted_timesteps (with a prediction of the RC's network)
+        float64   duration_s; movement_j, sensing_j, computation_j, transmission_j and their sum total_j; battery_left_j;
+                  distance_m (flown); reliable_scs_sum (of scores, 0 .. 1); reward_sum (Eq. 21, no unit),
+                  absolute_reward_error_sum, largest_reward_error (of predictions); start_x_m, start_y_m, start_z_m,
+                  start_yaw_rad, start_rc_distance_m
+        """
     def steps(self, arm: str = "", *, frame: bool = False) -> Any:
-        """One row a timestep, likewise: {"arm", "mission", "k", "x_m", "scs", "total_j", "reward", ...}."""
+        """One row a timestep, likewise; missions["timesteps"] rows of each mission that kept them, in order.
+
+        text      arm
+        int64     mission; k (from 1); motion_rule (codes["motion_rule"]); band (of the last score: 0 none, 1
+                  reliable, 2 intermediate, 3 persisting, 4 low); halted (1: by the LiDARs); contact_steps; execution (codes["execution"]); execution_random (1: drawn);
+                  fire_in_view (1: yes)
+        float64   command_dx_m, command_dy_m, command_dz_m, command_turn_rad, command_tilt_rad; epsilon (probability of a random
+                  motion); x_m, y_m, z_m, yaw_rad, tilt_rad (after the move); cpu_hz, bandwidth_hz, shadowing_db, rc_distance_m,
+                  rate_bps, transmit_power_w; confidence_mean, confidence_sd, scs, fire_only_scs (0 .. 1); fire_share,
+                  smoke_share (of the image, 0 .. 1);
+                  horizontal_s, ascent_s, descent_s, turning_s, sensing_s, computing_s, transmitting_s; horizontal_j, ascent_j,
+                  descent_j, hover_turning_j, hover_sensing_j, hover_computing_j, hover_transmitting_j, sensing_j,
+                  computation_j, transmission_j, total_j; battery_j (left); reward (Eq. 21), rc_predicted_reward,
+                  robot_predicted_reward (NaN where no network was asked)
+        """
     def report(self) -> dict[str, Any]:
-        """What 'ed3r report DIR --json' prints: metrics of each arm with 95 % intervals, verdicts on the claims."""
+        """What 'ed3r report DIR --json' prints: metrics of each arm with 95 % intervals, differences between the arms of a
+        stage, paired by scenario, verdicts on the claims of the paper."""
     def digest(self) -> str:
         """The hash over all results, as 'ed3r digest DIR'."""

@@ -1,12 +1,14 @@
 """Missions of Python policies, stored as ordinary arms."""
 
+import difflib
 import hashlib
 import inspect
 import os
 
 import numpy as np
 
-from . import _core
+from . import _arguments, _core
+from ._core import UserError
 from ._run import Run
 
 _INFOS = ("mission", "timestep", "hovers", "ranges", "scs", "total_j", "battery_j")
@@ -26,26 +28,36 @@ def _identity(policy, version):
         try:
             sources.append(f"{name}\n{inspect.getsource(decide)}")
         except (OSError, TypeError):
-            raise ValueError("version: is needed for a policy whose source cannot be read; allowed: any text that is "
-                             "another one whenever the policy decides otherwise") from None
+            raise UserError("version: is needed for a policy whose source cannot be read; allowed: any text that is "
+                            "another one whenever the policy decides otherwise") from None
     return "source " + hashlib.sha256("\n".join(sources).encode()).hexdigest()[:16]
 
 
-def _policy_of(policy, arm):
-    if policy is None:
-        raise ValueError(f"policy: arm '{arm}' of strategy external needs one")
-    if not isinstance(policy, dict):
-        return policy
-    if arm not in policy:
-        raise ValueError(f"policy: has none for arm '{arm}'; allowed: one for each arm of strategy external")
-    return policy[arm]
+def _two_stages(policy):
+    return hasattr(policy, "move") and hasattr(policy, "detect")
+
+
+def _check_policy(policy, arms):
+    """Whether there is a policy for each of the arms of strategy external, and for nothing else."""
+    policies = policy if isinstance(policy, dict) else dict.fromkeys(arms, policy)
+    for name in policies:
+        if name not in arms:
+            nearest = difflib.get_close_matches(str(name), arms, 1)
+            raise UserError(f"policy: {name!r} is not an arm of strategy external; allowed: {' | '.join(arms) or 'none'}"
+                            + (f"; did you mean {nearest[0]}?" if nearest else ""))
+    for arm in arms:
+        if policies.get(arm) is None:
+            raise UserError(f"policy: arm '{arm}' of strategy external needs one")
+        if not (callable(policies[arm]) or _two_stages(policies[arm])):
+            _arguments.refuse("policy", policies[arm], "a function of (obs, info), or an object with move and detect")
+    return policies
 
 
 def _drive(fleet, policy):
     """Steps a fleet until all of its rows have retired."""
     now = fleet.views()
-    two_stages = hasattr(policy, "move") and hasattr(policy, "detect")
-    commands = np.zeros((fleet.rows, 5), np.float32)
+    two_stages = _two_stages(policy)
+    commands = np.zeros((fleet.rows, len(_arguments.COMMANDS)), np.float32)
     executions = np.zeros(fleet.rows, np.int64)
     while not fleet.stopped:
         rows = np.flatnonzero(now["mission"] >= 0)
@@ -54,24 +66,23 @@ def _drive(fleet, policy):
         info = {name: now[name][rows] for name in _INFOS}
         seen = now["controller"][rows]
         if two_stages:
-            commands[rows] = policy.move(seen, info)
+            commands[rows] = _arguments.numbers("policy.move", policy.move(seen, info), (rows.size, commands.shape[1]))
             fleet.move(commands)
-            executions[rows] = policy.detect(now["robot"][rows], info)
+            executions[rows] = _arguments.executions("policy.detect", policy.detect(now["robot"][rows], info), rows.size)
         else:
-            actions = np.asarray(policy(seen, info))
-            if actions.shape != (rows.size, 6):
-                raise ValueError(f"policy: gave shape {actions.shape}; allowed: {(rows.size, 6)}")
-            commands[rows] = actions[:, :5]
+            commands[rows], executions[rows] = _arguments.actions("policy", policy(seen, info), rows.size)
             fleet.move(commands)
-            executions[rows] = np.floor(actions[:, 5])
         fleet.detect(executions)
 
 
 def fly(sweep, policy=None, out=None, *, seed=None, missions=None, settings=(), num_envs=64, threads=0, version=None,
         cache="results/cache"):
     """Flies what is missing of a sweep, its arms of strategy external by `policy`; see the stub."""
-    request = _core.SweepRequest(str(sweep), list(settings), seed, missions)
-    out = os.path.join("results", "runs", _core.sweep_name(request)) if out is None else str(out)
-    _core.fly(request, out, cache, _identity(policy, version), num_envs, threads,
-              lambda fleet: _drive(fleet, _policy_of(policy, fleet.arm)))
+    request = _arguments.request(sweep, settings, seed, missions)
+    num_envs, threads = _arguments.num_envs(num_envs), _arguments.threads(threads)
+    name, arms = _core.sweep_outline(request)
+    policies = _check_policy(policy, arms)
+    out = os.path.join("results", "runs", name) if out is None else _arguments.path("out", out)
+    _core.fly(request, out, _arguments.path("cache", cache), _identity(policy, version), num_envs, threads,
+              lambda fleet: _drive(fleet, policies[fleet.arm]))
     return Run(out)

@@ -2,16 +2,30 @@
 
 import numpy as np
 
-from . import _core
+from . import _arguments, _core
+
+
+def _array(name, value, kind=np.float32):
+    try:
+        return np.ascontiguousarray(value, kind)
+    except (TypeError, ValueError):
+        return _arguments.refuse(name, value, "an array of numbers")
+
+
+def _layers(name, value):
+    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+        _arguments.refuse(name, value, "a list of arrays of numbers, one for each layer")
+    return [_array(f"{name}[{layer}]", array) for layer, array in enumerate(value)]
 
 
 def save_network(path, agent, weights, biases, *, mean=None, sd=None):
     """Writes a dense network for networks.rc or networks.robot; see the stub."""
-    weights = [np.ascontiguousarray(layer, np.float32) for layer in weights]
-    biases = [np.ascontiguousarray(layer, np.float32).ravel() for layer in biases]
-    mean = [] if mean is None else np.asarray(mean, np.float32).ravel().tolist()
-    sd = np.empty(0) if sd is None else np.asarray(sd, float).ravel()
+    path = _arguments.path("path", path)
+    weights = _layers("weights", weights)
+    biases = [layer.ravel() for layer in _layers("biases", biases)]
+    mean = [] if mean is None else _array("mean", mean).ravel().tolist()
+    sd = np.empty(0) if sd is None else _array("sd", sd, float).ravel()
     inverse = np.divide(1.0, sd, out=np.zeros(sd.size), where=sd != 0)
-    data = _core.network_bytes(str(path), agent, weights, biases, mean, inverse.tolist())
+    data = _core.network_bytes(path, _arguments.text("agent", agent), weights, biases, mean, inverse.tolist())
     with open(path, "wb") as file:
         file.write(data)

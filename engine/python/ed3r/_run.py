@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 
-from . import _core
+from . import _arguments, _core
 
 
 class Run:
@@ -13,7 +13,7 @@ class Run:
     codes = _core.code_names()
 
     def __init__(self, dir):
-        self.dir = str(dir)
+        self.dir = _arguments.path("dir", dir)
         self._reader = _core.RunReader(self.dir)
 
     @property
@@ -26,10 +26,10 @@ class Run:
                 for a in self._reader.arms()]
 
     def missions(self, arm="", *, frame=False):
-        return self._table(self._reader.missions(arm), frame)
+        return self._table(self._reader.missions(_arguments.text("arm", arm)), frame)
 
     def steps(self, arm="", *, frame=False):
-        return self._table(self._reader.steps(arm), frame)
+        return self._table(self._reader.steps(_arguments.text("arm", arm)), frame)
 
     def report(self):
         return json.loads(self._reader.report_json())

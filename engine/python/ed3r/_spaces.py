@@ -49,8 +49,10 @@ except ImportError:
         def unwrapped(self):
             return self
 
-        def close(self):
-            self.closed = True
+        def close(self, **kwargs):
+            if not self.closed:
+                self.close_extras(**kwargs)
+                self.closed = True
 
 
 try:

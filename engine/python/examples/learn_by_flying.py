@@ -49,7 +49,7 @@ class Policy:
 
 
 def score(env, policy, seed):
-    """Mean return of the first missions of a seed, one in each row."""
+    """Mean return of the first missions of a seed, one in each row; what a row flies after its first does not count."""
     obs, info = env.reset(seed=seed)
     total, flying = np.zeros(env.num_envs), np.ones(env.num_envs, bool)
     for _ in range(HORIZON):
@@ -89,7 +89,7 @@ def main():
     options = parser.parse_args()
 
     known = ["mission.sites=known", "mission.base_stations=known"]
-    env = ed3r.VectorEnv(options.sweep, arm="mine", num_envs=options.envs, autoreset_mode="disabled", settings=known)
+    env = ed3r.VectorEnv(options.sweep, arm="mine", num_envs=options.envs, settings=known)
     parameters = learn(env, options.generations, options.candidates, np.random.default_rng(1))
     if options.save:
         np.save(options.save, parameters)

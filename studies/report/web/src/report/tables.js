@@ -1,6 +1,6 @@
 // Every table of the report, sortable, with links to its files; what variants change; the static figures.
 import { el } from "../lib/dom.js";
-import { count, interval, number } from "../lib/format.js";
+import { count, interval, number, pValue } from "../lib/format.js";
 import { sortedTable } from "../lib/table.js";
 
 export function tables(model) {
@@ -16,6 +16,7 @@ export function tables(model) {
       "Ours in bold, the 95 % interval beneath, then the paper's value (◆: our interval holds it, give or take its rounding). These are of all missions, whatever is chosen above.",
     ),
     data.tables.map((table) => tableNode(model, table)),
+    differences(model),
     variants(model),
     el(
       "p",
@@ -101,6 +102,39 @@ const compared = (model) =>
     ),
   );
 
+const differenceCell = (row) => [
+  el(row.certain ? "b" : "span", {}, `${row.difference > 0 ? "+" : ""}${number(row.difference, 2)}`),
+  el("i", {}, interval(row.lo, row.hi, 2)),
+];
+
+/** Arms of a stage minus one of them, where no claims of the paper compare them. */
+function differences(model) {
+  const rows = model.data.differences;
+  if (!rows || rows.length === 0) return null;
+  const heading = (row) => model.byName[row.metric]?.heading ?? row.metric;
+  return [
+    el("h3", { id: "differences" }, "Arms compared"),
+    el(
+      "p",
+      { class: "key" },
+      "Each arm minus another of its stage, paired by scenario, with 95 % intervals; p after Holm’s correction for all of them, bold below 0.05 unless a single trained network flew on a side.",
+    ),
+    sortedTable(
+      [
+        { label: "arm", left: true, key: (r) => r.arm, text: (r) => r.arm },
+        { label: "minus", left: true, key: (r) => r.minus, text: (r) => r.minus },
+        { label: "metric", left: true, key: heading, text: heading },
+        { label: "difference", key: (r) => r.difference, text: differenceCell },
+        { label: "p", key: (r) => r.p_holm, text: (r) => pValue(r.p_holm) },
+        { label: "pairs", key: (r) => r.pairs, text: (r) => count(r.pairs) },
+      ],
+      rows,
+      { caption: "Arms compared" },
+    ),
+    el("p", { class: "files" }, el("a", { href: "differences.csv" }, "differences.csv")),
+  ];
+}
+
 function variants(model) {
   const study = model.data.variants;
   if (!study) return null;
@@ -118,14 +152,7 @@ function variants(model) {
         { label: "variant", left: true, key: (r) => r.variant, text: (r) => r.variant },
         { label: "arm", left: true, key: (r) => r.label, text: (r) => r.label },
         { label: "metric", left: true, key: (r) => r.metric, text: (r) => metric(r)?.heading ?? r.metric },
-        {
-          label: "difference",
-          key: (r) => r.difference,
-          text: (r) => [
-            el(r.certain ? "b" : "span", {}, `${r.difference > 0 ? "+" : ""}${number(r.difference, 2)}`),
-            el("i", {}, interval(r.lo, r.hi, 2)),
-          ],
-        },
+        { label: "difference", key: (r) => r.difference, text: differenceCell },
       ],
       study.differences,
       { caption: "What each variant changes" },
