@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "studies/report/html.h"
 #include "studies/report/report.h"
 #include "studies/statistics/intervals.h"
 
@@ -119,6 +120,23 @@ TEST(ArmDifferencesTest, ReportsOfOwnArmsTellThem) {
   EXPECT_EQ(json["differences"][0]["certain"], true);
   EXPECT_EQ(variants::ArmDifferenceCsv(report.differences).substr(0, 84),
             "stage,arm,minus,metric,base,difference,lo,hi,p,p_holm,pairs,base_networks,networks\no");
+}
+
+TEST(ArmDifferencesTest, PagesTellThem) {
+  std::vector<metrics::ArmData> arms = Stage();
+  arms[0].name = "<mine>";
+  const report::Report report = report::MakeReport({"own", arms}, {});
+  const report::Provenance provenance;
+  const nlohmann::ordered_json figures = nlohmann::ordered_json::array();
+  const std::string page = report::ReportContent({.report = report,
+                                                  .provenance = provenance,
+                                                  .figures = figures,
+                                                  .figures_note = "",
+                                                  .report_command = ""});
+  EXPECT_NE(page.find("<tr><th>&lt;mine&gt;</th><td>rbs</td><td>energy, kJ</td><td><b>-4.00</b><i>-4.94 to "
+                      "-3.06</i></td><td>&lt;0.001</td><td>6</td></tr>"),
+            std::string::npos)
+      << page;
 }
 
 TEST(ArmDifferencesTest, VerdictsTellThoseOfThePaper) {
