@@ -16,12 +16,13 @@ namespace {
 
 struct Options {
   SweepArguments sweep;
+  std::int64_t shards = 0;  // 0: not asked
   bool json = false;
 };
 
 double ExpectedWallS(const sweep::Stage& stage, int threads) { return ExpectedCoreS(stage) / threads; }
 
-void PrintJson(const sweep::SweepPlan& plan, int threads) {
+void PrintJson(const sweep::SweepPlan& plan, int threads, std::int64_t shards) {
   nlohmann::ordered_json object = {
       {"name", plan.name}, {"question", plan.question}, {"seed", plan.seed}, {"missions", plan.Missions()}};
   for (const sweep::Stage& stage : plan.stages) {
@@ -38,11 +39,25 @@ void PrintJson(const sweep::SweepPlan& plan, int threads) {
                                 {"timesteps", NameOf(stage.timesteps)},
                                 {"expected_s", ExpectedWallS(stage, threads)},
                                 {"arms", arms}});
+    if (shards == 0 || stage.kind != sweep::StageKind::kFly) continue;
+    const ExpectedShards expected = ExpectedShardsOf(stage, shards);
+    object["stages"].back()["shards"] = {{"tasks", expected.tasks},
+                                         {"missions", expected.missions},
+                                         {"expected_core_s", expected.core_s},
+                                         {"longest_over_mean", expected.longest_over_mean}};
   }
   fmt::print("{}\n", object.dump(2));
 }
 
-void PrintText(const sweep::SweepPlan& plan, int threads) {
+std::string ShardsText(const sweep::Stage& stage, std::int64_t shards) {
+  const ExpectedShards expected = ExpectedShardsOf(stage, shards);
+  return fmt::format(
+      "  in {}: {:.0f} missions and about {:.1f} core minutes each, the longest about {:.2f} times the "
+      "mean\n",
+      Counted(expected.tasks, "shard"), expected.missions, expected.core_s / 60, expected.longest_over_mean);
+}
+
+void PrintText(const sweep::SweepPlan& plan, int threads, std::int64_t shards) {
   fmt::print("{}: {}\nseed {}, {}\n", plan.name, plan.question, plan.seed,
              Counted(plan.Missions(), "mission"));
   for (const sweep::Stage& stage : plan.stages) {
@@ -56,6 +71,7 @@ void PrintText(const sweep::SweepPlan& plan, int threads) {
     fmt::print(
         ": {} x {}, about {:.1f} min on {}\n", Counted(static_cast<std::int64_t>(stage.arms.size()), "arm"),
         Counted(stage.missions, "mission"), ExpectedWallS(stage, threads) / 60.0, Counted(threads, "thread"));
+    if (shards > 0) fmt::print("{}", ShardsText(stage, shards));
     if (stage.timesteps != sweep::KeptTimesteps::kAll)
       fmt::print("  stores timesteps of {} missions\n",
                  stage.timesteps == sweep::KeptTimesteps::kNone ? "no" : "failed");
@@ -74,12 +90,17 @@ Command AddPlan(Program& program) {
   CommandLine parser =
       program.AddCommand("plan", "Stages, arms, missions and expected time of a sweep; flies nothing");
   options->sweep.AddTo(parser);
+  parser
+      .Option("--shards", options->shards,
+              "Also what this many tasks of a cluster do each, and how far apart they end")
+      .Range(1, 100'000);
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
             const sweep::SweepPlan plan = options->sweep.Load();
             schedule::CheckTraining(plan);
             const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-            options->json ? PrintJson(plan, threads) : PrintText(plan, threads);
+            options->json ? PrintJson(plan, threads, options->shards)
+                          : PrintText(plan, threads, options->shards);
             return kDone;
           }};
 }

@@ -188,14 +188,24 @@ Command AddReport(Program& program) {
 Command AddDigest(Program& program) {
   CommandLine parser =
       program.AddCommand("digest", "One SHA-256 over all stored results, the same however they were flown");
+  parser.Footer(
+      "Shards in DIR count, merged or not. Where missions of the plan are not stored, a note says how many.");
   const auto options = AddDirOptions(parser);
   return {parser, [options] {
-            store::ResultReader reader(options->dir);
+            const GatheredShards run(options->dir);
+            store::ResultReader reader(run.dir());
             const std::string digest = store::DigestOf(reader);
+            const std::int64_t missions = reader.CountMissions(), planned = reader.Layout().Missions();
             if (options->json)
-              fmt::print("{}\n", nlohmann::ordered_json({{"sha256", digest}}).dump(2));
+              fmt::print("{}\n", nlohmann::ordered_json(
+                                     {{"sha256", digest}, {"missions", missions}, {"planned", planned}})
+                                     .dump(2));
             else
               fmt::print("{}\n", digest);
+            std::fflush(stdout);  // before what goes to the other stream
+            if (missions < planned)
+              fmt::print(stderr, "note: this is the digest of {} of {} planned missions\n", missions,
+                         planned);
             return kDone;
           }};
 }

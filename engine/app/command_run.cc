@@ -6,6 +6,7 @@
 #include "engine/app/commands.h"
 #include "engine/app/finished_run.h"
 #include "engine/app/machine.h"
+#include "engine/app/shard_text.h"
 #include "engine/app/stored_run.h"
 #include "engine/app/sweep_arguments.h"
 #include "engine/app/words.h"
@@ -55,8 +56,6 @@ void PrintSession(const schedule::SweepSummary& summary, const std::string& dir)
                flown.simulated_s / flown.wall_s / flown.threads);
   fmt::print("\n");
   fmt::print("{}", NetworksText(summary.networks));
-  if (!summary.waiting_stage.empty())
-    fmt::print("stage {} waits: missions that it builds on are missing or failed\n", summary.waiting_stage);
 }
 
 int ToldEnd() {
@@ -140,9 +139,14 @@ int Run(const Options& options) {
 
   std::string table;
   if (!options.quiet) {
-    if (!summary.flown.interrupted) table = TableOf(sweep.dir);
-    if (!summary.flown.interrupted) fmt::print("{}\n", table);
-    PrintSession(summary, sweep.dir);
+    const bool part = shard.count > 1, ended = !summary.flown.interrupted;
+    if (ended) table = part ? ShardTable(plan, shard, options.stage, dir) : TableOf(dir);
+    if (ended) fmt::print("{}\n", table);
+    PrintSession(summary, dir);
+    if (part && ended)
+      fmt::print("{}", AfterShard(plan, shard, options.stage, dir, summary.waiting_stage));
+    else if (!summary.waiting_stage.empty())
+      fmt::print("stage {} waits: missions that it builds on are missing or failed\n", summary.waiting_stage);
   }
   if (options.profile) fmt::print("time: {}\n", summary.profile.Text());
   if (summary.flown.interrupted) return ToldEnd();

@@ -18,6 +18,7 @@
 #include "engine/core/file.h"
 #include "engine/schedule/batch/owed.h"
 #include "engine/schedule/batch/shell.h"
+#include "engine/schedule/batch/slurm_limits.h"
 #include "engine/schedule/batch/slurm_scripts.h"
 #include "engine/schedule/training_stage.h"
 #include "studies/report/load.h"
@@ -33,7 +34,7 @@ struct Options {
   SweepArguments sweep;
   std::string out;
   std::string cache = "results/cache";
-  std::string time, partition, account, scratch;
+  std::string time, memory, partition, account, scratch;
   std::int64_t shards = 16, cpus = 1, array_limit = 1000;
   bool submit = false, missing = false, force = false;
 };
@@ -44,6 +45,28 @@ void CheckDirective(const char* option, const std::string& value) {
   if (!value.empty() && !schedule::IsDirectiveWord(value))
     throw UserError(
         fmt::format("{}: '{}' is not allowed; allowed: letters, digits and ._:,=@%+/[]-", option, value));
+}
+
+// A task that has no time left after the notice would be requeued again and again.
+void CheckTime(const std::string& time) {
+  constexpr int kShortest_s = 2 * schedule::kNotice_s;
+  if (time.empty()) return;
+  const auto time_s = schedule::SlurmTime_s(time);
+  if (!time_s)
+    throw UserError(fmt::format(
+        "--time: '{}' is not allowed; allowed: minutes, minutes:seconds, hours:minutes:seconds, days-hours, "
+        "days-hours:minutes and days-hours:minutes:seconds, such as 03:00:00",
+        time));
+  if (*time_s < kShortest_s)
+    throw UserError(fmt::format(
+        "--time: '{}' is {} s, and tasks are told {} s before their end or earlier; give {} minutes or more",
+        time, *time_s, schedule::kNotice_s, kShortest_s / 60));
+}
+
+void CheckMemory(const std::string& memory) {
+  if (!memory.empty() && !schedule::IsSlurmMemory(memory))
+    throw UserError(fmt::format(
+        "--mem: '{}' is not allowed; allowed: a number above 0 with K, M, G or T, such as 500M", memory));
 }
 
 std::vector<std::string> SweepWords(const SweepArguments& sweep) {
@@ -64,6 +87,7 @@ schedule::SlurmOptions ScriptOptions(const Options& options, const std::string& 
   slurm.partition = options.partition;
   slurm.account = options.account;
   slurm.time = options.time;
+  slurm.memory = options.memory;
   slurm.scratch = options.scratch;
   slurm.shards = options.shards;
   slurm.cpus = options.cpus;
@@ -159,7 +183,8 @@ int TellMissing(const sweep::SweepPlan& plan, const Options& options, const fs::
 }
 
 int Run(const Options& options) {
-  CheckDirective("--time", options.time);
+  CheckTime(options.time);
+  CheckMemory(options.memory);
   CheckDirective("--partition", options.partition);
   CheckDirective("--account", options.account);
   if (options.scratch.find_first_of("\"`\\\n") != std::string::npos)
@@ -174,6 +199,11 @@ int Run(const Options& options) {
   Write(schedule::SlurmScripts(plan.name, steps, ScriptOptions(options, run_dir)), folder, options.force);
   fmt::print("{}: {}, from {} to {}\n", folder.string(),
              Counted(static_cast<std::int64_t>(steps.size()), "step"), steps.front().name, steps.back().name);
+  if (options.time.empty())
+    fmt::print(
+        stderr,
+        "note: without --time, or a line for it in the scripts, no task is told before the site's limit "
+        "ends it and all that was to follow\n");
   if (options.submit) return Submit(folder, {});
   fmt::print("submit them with {}\n", schedule::ShellWord((folder / "submit.sh").string()));
   return kDone;
@@ -194,7 +224,10 @@ Command AddSlurm(Program& program) {
       .Path();
   parser.Option("--shards", options->shards, "Tasks of a stage's flights; default 16").Range(1, kMaxShards);
   parser.Option("--cpus-per-task", options->cpus, "Threads of a task; default 1").Range(1, 4096);
-  parser.Option("--time", options->time, "Time limit of a task, as sbatch takes it; default: the site's");
+  parser.Option("--time", options->time,
+                "Time limit of a task, as sbatch takes it, such as 03:00:00; default: the site's");
+  parser.Option("--mem", options->memory,
+                "Memory of a task, as sbatch takes it, such as 1G; default: the site's");
   parser.Option("--partition", options->partition, "Partition; default: the site's");
   parser.Option("--account", options->account, "Account; default: the site's");
   parser

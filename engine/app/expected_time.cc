@@ -1,5 +1,9 @@
 #include "engine/app/expected_time.h"
 
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+
 #include "engine/agents/strategy.h"
 #include "engine/robot/energy.h"
 
@@ -13,11 +17,20 @@ constexpr double kRealTimePerCoreOnPixels = 1100.0;
 // Mean length of a mission that may end early (paper: RBS).
 constexpr double kEarlyCompletionS = 280.0;
 
+// Standard deviation over mean of missions' durations: those that may end early, and those until the battery is empty
+// (results/scale.md, sweeps/default_world.yaml).
+constexpr double kEarlyCompletionSpread = 1.29;
+constexpr double kDepletionSpread = 0.03;
+
+bool MayEndEarly(const sweep::Arm& arm) {
+  return agents::FindStrategy(arm.config.mission.strategy).early_completion &&
+         arm.config.agents.early_completion;
+}
+
 // A mission without early completion lasts until the battery is empty.
 double ExpectedSimulatedS(const sweep::Arm& arm) {
   const Config& config = arm.config;
-  if (agents::FindStrategy(config.mission.strategy).early_completion && config.agents.early_completion)
-    return kEarlyCompletionS;
+  if (MayEndEarly(arm)) return kEarlyCompletionS;
   return config.robot.BatteryJ() /
          robot::MovementPowerOf(config.robot, config.environment, config.energy).hover_w;
 }
@@ -34,6 +47,28 @@ double ExpectedCoreS(const sweep::Stage& stage) {
   if (stage.kind == sweep::StageKind::kFly)
     for (const sweep::Arm& arm : stage.arms) core_s += stage.missions * ExpectedCoreS(arm);
   return core_s;
+}
+
+ExpectedShards ExpectedShardsOf(const sweep::Stage& stage, std::int64_t shards) {
+  double variance_core_s2 = 0.0;
+  for (const sweep::Arm& arm : stage.arms)
+    variance_core_s2 +=
+        stage.missions *
+        std::pow(ExpectedCoreS(arm) * (MayEndEarly(arm) ? kEarlyCompletionSpread : kDepletionSpread), 2);
+  const auto missions = static_cast<std::int64_t>(stage.arms.size()) * stage.missions;
+  ExpectedShards expected;
+  expected.tasks = std::min(shards, missions);
+  if (expected.tasks == 0) return expected;
+  const double tasks = static_cast<double>(expected.tasks);
+  expected.missions = static_cast<double>(missions) / tasks;
+  expected.core_s = ExpectedCoreS(stage) / tasks;
+  if (expected.tasks == 1) return expected;
+  const double spread = std::sqrt(variance_core_s2 / tasks) / expected.core_s;
+  // The largest of as many normal draws (Blom 1958), corrected for the skewness of a gamma distribution of this spread
+  // (the first term of Cornish and Fisher): a sum of few missions is skewed still.
+  const double normal = quantile(boost::math::normal(), (tasks - 0.375) / (tasks + 0.25));
+  expected.longest_over_mean = 1 + spread * (normal + (normal * normal - 1) / 6 * 2 * spread);
+  return expected;
 }
 
 }  // namespace ed3r::app

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <vector>
 
 #include "engine/core/check.h"
@@ -25,27 +26,67 @@ std::string NewTemporaryFolder() {
   return name;
 }
 
-// Whether no mission is missing in the merged run, so that the shards have nothing to add.
-bool IsComplete(const std::string& run_dir) {
-  const std::vector<store::ArmStatus> arms = store::ResultReader(run_dir).Status();
-  return std::all_of(arms.begin(), arms.end(), [](const store::ArmStatus& arm) { return arm.missing == 0; });
+bool HoldsResults(const std::string& dir) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(fs::path(dir) / store::kResultsFile, error);
+  return !error && bytes > 0;
 }
+
+std::vector<sweep::RunId> Failed(store::ResultReader& reader) {
+  std::vector<sweep::RunId> failed;
+  for (const store::FailedMission& failure : reader.Failures()) failed.push_back(failure.id);
+  return failed;
+}
+
+bool Includes(const std::vector<sweep::RunId>& all, const std::vector<sweep::RunId>& some) {
+  return std::includes(all.begin(), all.end(), some.begin(), some.end());
+}
+
+// What the merged run knows of missions: a failure tells it nothing of one that it has stored.
+class Merged {
+ public:
+  explicit Merged(const std::string& run_dir) : reader_(run_dir), stored_(reader_.Stored()) {
+    const std::vector<sweep::RunId> failed = Failed(reader_);
+    std::set_union(stored_.begin(), stored_.end(), failed.begin(), failed.end(), std::back_inserter(known_));
+  }
+
+  // Then shards have nothing to add, be they of the plan as it was before it grew.
+  bool IsComplete() const { return std::ssize(stored_) == reader_.Layout().Missions(); }
+
+  bool Lacks(const std::string& shard) const {
+    store::ResultReader reader(shard);
+    if (!reader.Layout().SameMissions(reader_.Layout())) return true;  // merging tells what is wrong with it
+    return !Includes(stored_, reader.Stored()) || !Includes(known_, Failed(reader));
+  }
+
+ private:
+  store::ResultReader reader_;
+  std::vector<sweep::RunId> stored_, known_;
+};
 
 }  // namespace
 
+std::vector<std::string> StoresThatAdd(const std::string& run_dir) {
+  std::vector<std::string> shards = store::ShardDirs(run_dir);
+  if (!HoldsResults(run_dir)) return shards;
+  if (!shards.empty()) {
+    const Merged merged(run_dir);
+    std::erase_if(shards,
+                  [&](const std::string& shard) { return merged.IsComplete() || !merged.Lacks(shard); });
+  }
+  shards.insert(shards.begin(), run_dir);
+  return shards;
+}
+
 GatheredShards::GatheredShards(const std::string& run_dir) : dir_(run_dir) {
-  std::vector<std::string> stores = store::ShardDirs(run_dir);
-  if (stores.empty()) return;
-  std::error_code error;  // none there: nothing has been merged yet
-  const std::uintmax_t merged_bytes = fs::file_size(fs::path(run_dir) / store::kResultsFile, error);
-  const bool merged = !error && merged_bytes > 0;
-  if (merged && IsComplete(run_dir)) return;
-  if (merged) stores.insert(stores.begin(), run_dir);
+  const std::vector<std::string> stores = StoresThatAdd(run_dir);
+  if (stores.empty() || (stores.size() == 1 && stores.front() == run_dir)) return;
   temporary_ = NewTemporaryFolder();
   dir_ = (fs::path(temporary_) / "run").string();
   try {
     store::MergeStores(dir_, stores);
   } catch (...) {
+    std::error_code error;
     fs::remove_all(temporary_, error);
     throw;
   }

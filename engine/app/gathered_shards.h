@@ -2,8 +2,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace ed3r::app {
+
+// RUN, where it has a store, and the stores of RUN/shards that hold missions or failures which RUN does not. Compares keys
+// alone. UserError where one cannot be read.
+std::vector<std::string> StoresThatAdd(const std::string& run_dir);
 
 // Joins the stores of RUN/shards, and RUN's own where it has one, into a folder in $TMPDIR that goes with this object; a run
 // without shards, or that they have nothing to add to, is read where it is. Changes nothing in RUN. UserError where the stores do not belong together.

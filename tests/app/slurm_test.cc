@@ -69,14 +69,18 @@ TEST_F(PiecesTest, GiveTheDigestOfOneMachine) {
 
   const CommandResult early = Piece(sweep, "training", "1/2");
   EXPECT_EQ(early.status, 2);
+  EXPECT_EQ(Ed3r("status --stage warmup " + Run()).status, 3);
   ExpectDone(Piece(sweep, "warmup", "1/2"));
   EXPECT_TRUE(Says(Missing(sweep), "step 2-warmup-merge on\n")) << Missing(sweep);
+  EXPECT_EQ(Ed3r("status --stage warmup " + Run()).status, 0) << "shards count before they are merged";
+  EXPECT_FALSE(fs::exists(Run() + "/results.sqlite")) << "looking merges nothing";
   Merge("warmup");
   EXPECT_EQ(Ed3r("status --stage warmup " + Run()).status, 0);
   EXPECT_EQ(Ed3r("status --stage online " + Run()).status, 3);
 
   EXPECT_TRUE(Says(Missing(sweep), "step 3-training on, 2 of its 2 tasks: 1-2")) << Missing(sweep);
   EXPECT_EQ(Piece(sweep, "online", "1/2").status, 2) << "no networks yet";
+  EXPECT_FALSE(fs::exists(Run() + "/shards/online")) << "what is refused leaves nothing";
   ExpectDone(Piece(sweep, "training", "1/2"));
   EXPECT_TRUE(Says(Missing(sweep), "step 3-training on, 1 of its 2 tasks: 2")) << Missing(sweep);
   ExpectDone(Piece(sweep, "training", "2/2"));
@@ -84,7 +88,15 @@ TEST_F(PiecesTest, GiveTheDigestOfOneMachine) {
   ExpectDone(Ed3r(fmt::format("run {} --stage training --out {} --cache {} --quiet", sweep, Run(), Cache())));
 
   ExpectDone(Piece(sweep, "online", "1/2"));
+  const CommandResult of_part = Ed3r("digest " + Run());
+  EXPECT_TRUE(Says(of_part.err, "note: this is the digest of ")) << of_part.err;
+  EXPECT_NE(of_part.out, Ed3r("digest " + whole).out);
+  EXPECT_EQ(Ed3r("status --stage online " + Run()).status, 3);
   ExpectDone(Piece(sweep, "online", "2/2"));
+  const CommandResult of_all = Ed3r("digest " + Run());
+  EXPECT_EQ(of_all.out, Ed3r("digest " + whole).out) << "shards count before they are merged";
+  EXPECT_EQ(of_all.err, "");
+  EXPECT_EQ(Ed3r("status --stage online " + Run()).status, 0);
   const std::string report =
       " --json --no-figures --no-missions --force --out " + (scratch_ / "report").string();
   const CommandResult of_shards = Ed3r("report " + Run() + report);
@@ -148,6 +160,42 @@ TEST_F(PiecesTest, APrecisionGoesInRounds) {
   EXPECT_EQ(Ed3r("digest " + Run()).out, Ed3r("digest " + whole).out);
 }
 
+TEST_F(PiecesTest, APartTellsWhatItDidAndWhatToDoNext) {
+  const std::string sweep = Write("name: parts\nmissions: 20\nset: {strategy: rbs, " + kWorld +
+                                  "}\nsweep: {robot.battery_mah: [400, 800]}");
+  const std::string task = Run() + "/shards/online/2";
+  const CommandResult of_task = Ed3r(fmt::format("run {} --stage online --shard 2/4 --out {}", sweep, task));
+  ExpectDone(of_task);
+  EXPECT_TRUE(Says(of_task.out, "part 2 of 4\n")) << of_task.out;
+  std::size_t arms = 0, at = 0;
+  for (; (at = of_task.out.find("        5        5        0        0\n", at)) != std::string::npos; ++at)
+    ++arms;
+  EXPECT_EQ(arms, 2u) << "its part, done, failed, missing: " << of_task.out;
+  EXPECT_TRUE(Says(of_task.out, task + ": 10 missions stored")) << of_task.out;
+  EXPECT_TRUE(Says(of_task.out,
+                   fmt::format("all 4 parts are flown: ed3r merge {} {}/shards/online/*/\n", Run(), Run())))
+      << of_task.out;
+  EXPECT_FALSE(Says(of_task.out, "success")) << "no table of the whole study";
+  const std::string alone = (scratch_ / "alone").string();
+  const CommandResult of_folder = Ed3r(fmt::format("run {} --shard 4/4 --out {}", sweep, alone));
+  EXPECT_TRUE(Says(of_folder.out, "ed3r merge OUT " + alone + " DIR...\n")) << of_folder.out;
+}
+
+TEST_F(PiecesTest, APlanTellsHowFarShardsEndApart) {
+  const std::string sweep = Write("name: spread\nmissions: 3920\nset: {strategy: rbs, " + kWorld + "}\n");
+  const CommandResult planned = Ed3r("plan --json --shards 50 " + sweep);
+  ExpectDone(planned);
+  const auto shards = nlohmann::json::parse(planned.out)["stages"][0]["shards"];
+  EXPECT_EQ(shards["tasks"], 50);
+  EXPECT_NEAR(shards["missions"], 78.4, 1e-9);
+  EXPECT_NEAR(shards["longest_over_mean"], 1.39, 0.05) << "results/scale.md";
+  EXPECT_TRUE(Says(Ed3r("plan --shards 50 " + sweep).out, "in 50 shards: 78 missions and about "));
+  const auto few =
+      nlohmann::json::parse(Ed3r("plan --json --shards 9000 " + sweep).out)["stages"][0]["shards"];
+  EXPECT_EQ(few["tasks"], 3920) << "no task without a mission";
+  EXPECT_FALSE(nlohmann::json::parse(Ed3r("plan --json " + sweep).out)["stages"][0].contains("shards"));
+}
+
 TEST_F(PiecesTest, WhatCannotBeIsRefused) {
   const std::string sweep = Write(kStages);
   const auto refusal = [&](const std::string& command) {
@@ -161,8 +209,13 @@ TEST_F(PiecesTest, WhatCannotBeIsRefused) {
   EXPECT_TRUE(Says(refusal("slurm " + sweep + out + " --missing"), "no batch scripts in it"));
   EXPECT_TRUE(
       Says(refusal("slurm " + sweep + out + " --partition 'a b'"), "--partition: 'a b' is not allowed"));
+  EXPECT_TRUE(
+      Says(refusal("slurm " + sweep + out + " --time 3h"), "--time: '3h' is not allowed; allowed: minutes,"));
+  EXPECT_TRUE(Says(refusal("slurm " + sweep + out + " --time 2:00"), "give 4 minutes or more"));
+  EXPECT_TRUE(Says(refusal("slurm " + sweep + out + " --mem 2GB"), "--mem: '2GB' is not allowed"));
   EXPECT_FALSE(fs::exists(Run()));
-  ExpectDone(Ed3r("slurm " + sweep + out));
+  EXPECT_EQ(Ed3r("slurm " + sweep + " --time 1-0 --mem 2G --out " + (scratch_ / "limited").string()).err, "");
+  EXPECT_TRUE(Says(Ed3r("slurm " + sweep + out).err, "note: without --time"));
   ExpectDone(Ed3r("slurm " + sweep + out));
   std::ofstream(Run() + "/slurm/common.sh", std::ios::app) << "module load gcc\n";
   EXPECT_TRUE(Says(refusal("slurm " + sweep + out), "common.sh: differs from what these options give"));

@@ -66,6 +66,29 @@ class Pages(unittest.TestCase):
                 done = ed3r("plan", str(file))
                 self.assertEqual(done.returncode, 0, f"{block}\n{done.stderr}")
 
+    # Apptainer itself is no package of Debian 12.
+    def test_the_apptainer_definition_copies_what_there_is(self):
+        text = (ROOT / "scripts/apptainer.def").read_text(encoding="utf-8")
+        head, *parts = re.split(r"^%(\w+)\n", text, flags=re.M)
+        sections = dict(zip(parts[::2], parts[1::2]))
+        self.assertEqual(len(parts), 2 * len(sections), "a section stands twice")
+        self.assertLessEqual(set(sections), {"help", "setup", "files", "post", "test", "environment", "runscript", "startscript", "labels"})
+        self.assertRegex(head, r"^Bootstrap: docker\nFrom: debian:12")
+        copied = [line.split() for line in sections["files"].splitlines() if line.strip()]
+        for source, target in copied:
+            self.assertTrue((ROOT / source).exists(), source)
+            self.assertEqual(target, f"/opt/ed3r/{source}")
+        # What CMake and the scripts of %post read is among them.
+        wanted = set(re.findall(r"add_subdirectory\((\w+)\)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")))
+        wanted |= {command.split("/")[0] for command in re.findall(r"^    (\w+/\w+)", sections["post"], re.M)}
+        self.assertGreaterEqual(len(wanted), 4)
+        self.assertLessEqual(wanted, {source for source, _ in copied})
+        for section in ("post", "test", "runscript"):
+            done = subprocess.run(["bash", "-n"], input=sections[section], capture_output=True, text=True, check=False)
+            self.assertEqual(done.stderr, "", section)
+        for command in re.findall(r"^    (scripts/\w+)", sections["post"], re.M):
+            self.assertTrue((ROOT / command).stat().st_mode & 0o100, command)
+
     def test_shipped_sweeps_are_told_of(self):
         page = (ROOT / "sweeps/README.md").read_text(encoding="utf-8")
         for sweep in (ROOT / "sweeps").glob("*.yaml"):

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
 
 #include "engine/schedule/batch/shell.h"
+#include "engine/schedule/batch/slurm_limits.h"
 #include "engine/schedule/batch/slurm_scripts.h"
 #include "engine/schedule/batch/steps.h"
 #include "engine/schedule/progress_of_stage.h"
@@ -60,6 +62,22 @@ TEST(BatchStepsTest, TasksAreWrittenAsArraysWithinTheLimit) {
   EXPECT_EQ(ArraysOf(all, 1000), (std::vector<std::string>{"1-1000+0", "1-1000+1000", "1-500+2000"}));
   EXPECT_EQ(ArraysOf({1000, 1001, 2002}, 1000), (std::vector<std::string>{"1000+0", "1+1000", "2+2000"}));
   EXPECT_TRUE(ArraysOf({}, 1000).empty());
+}
+
+// man sbatch: minutes, minutes:seconds, hours:minutes:seconds, days-hours, days-hours:minutes, days-hours:minutes:seconds.
+TEST(SlurmLimitsTest, AreAsSbatchDocumentsThem) {
+  EXPECT_EQ(SlurmTime_s("90"), 90 * 60);
+  EXPECT_EQ(SlurmTime_s("90:30"), 90 * 60 + 30);
+  EXPECT_EQ(SlurmTime_s("3:00:05"), 3 * 3600 + 5);
+  EXPECT_EQ(SlurmTime_s("2-12"), 60 * 3600);
+  EXPECT_EQ(SlurmTime_s("2-12:30"), 60 * 3600 + 1800);
+  EXPECT_EQ(SlurmTime_s("2-12:30:15"), 60 * 3600 + 1815);
+  for (const char* wrong : {"", "3h", "1:2:3:4", "1-", "-3", "1-2-3", "1:", ":30", "1.5", "1-02:03:04:05",
+                            " 3", "+3", "99999999999"})
+    EXPECT_EQ(SlurmTime_s(wrong), std::nullopt) << wrong;
+  for (const char* right : {"1000", "500M", "2G", "1T", "4096K"}) EXPECT_TRUE(IsSlurmMemory(right)) << right;
+  for (const char* wrong : {"", "0", "2g", "2GB", "M", "1.5G", "-1G"})
+    EXPECT_FALSE(IsSlurmMemory(wrong)) << wrong;
 }
 
 TEST(ShellWordTest, IsOneWordWhateverIsInIt) {
@@ -162,6 +180,20 @@ TEST_F(SlurmScriptsTest, ATaskIsAnOrdinaryRunOfOneShard) {
   EXPECT_EQ(Log(), "ed3r run /sweeps/study.yaml --set robot.speed_mps=3 --stage warmup --shard 3/4 --from " +
                        run + " --out " + run + "/shards/warmup/00003 --cache " + scratch_.Path() +
                        "/cache --threads 3 --quiet\n");
+}
+
+TEST_F(SlurmScriptsTest, MemoryIsALineToEdit) {
+  Write(kPlan, 4, 1000);
+  EXPECT_NE(Read("scripts/1-warmup.sbatch").find("\n##SBATCH --mem=1G"), std::string::npos);
+  SlurmOptions options;
+  options.memory = "2G";
+  const std::vector<BatchFile> files = SlurmScripts("study", StepsFor(kPlan, 4), options);
+  EXPECT_EQ(std::count_if(files.begin(), files.end(),
+                          [](const BatchFile& file) {
+                            return file.content.find("\n#SBATCH --mem=2G\n") != std::string::npos;
+                          }),
+            7)
+      << "every step";
 }
 
 TEST_F(SlurmScriptsTest, OnlyATaskThatWasStoppedInTimeOrKilledGoesBack) {

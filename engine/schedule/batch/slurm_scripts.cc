@@ -10,7 +10,6 @@
 namespace ed3r::schedule {
 namespace {
 
-constexpr int kNotice_s = 120;   // between USR1 and the time limit
 constexpr int kCollectCpus = 1;  // merges, collecting and the report are single tasks of little work
 
 constexpr char kCommon[] =
@@ -61,7 +60,6 @@ finish() {{
 fly() {{
   local store=$shards/$1/$(printf '%05d' "$2") out status=0
   out=$store
-  mkdir -p "$store"
   if [ -n "$scratch" ]; then
     out=$(mktemp -d "$scratch/ed3r-XXXXXX")
     [ ! -e "$store/results.sqlite" ] || cp "$store/results.sqlite" "$out/"
@@ -71,7 +69,7 @@ fly() {{
   if [ -n "$scratch" ] && [ -s "$out/results.sqlite" ]; then
     # By merge and not by cp: what a killed task has stored may still lie in the journal beside its file. The store appears
     # whole or not at all; what cannot be brought home stays where it is.
-    if "$ed3r" merge "$out/whole" "$out" >&2 && cp "$out/whole/results.sqlite" "$store/.arriving"; then
+    if "$ed3r" merge "$out/whole" "$out" >&2 && mkdir -p "$store" && cp "$out/whole/results.sqlite" "$store/.arriving"; then
       mv -f "$store/.arriving" "$store/results.sqlite" && rm -rf "$out"
     else
       echo "the results of this task could not be moved to $store; they are in $out on $(hostname)" >&2
@@ -125,6 +123,12 @@ std::string Directives(const std::string& sweep_name, const BatchStep& step, con
   text += fmt::format("#SBATCH --ntasks=1\n#SBATCH --cpus-per-task={}\n", cpus);
   if (!options.partition.empty()) text += fmt::format("#SBATCH --partition={}\n", options.partition);
   if (!options.account.empty()) text += fmt::format("#SBATCH --account={}\n", options.account);
+  if (!options.memory.empty())
+    text += fmt::format("#SBATCH --mem={}\n", options.memory);
+  else
+    text +=
+        "##SBATCH --mem=1G  # left to the site; one # less asks for it ('On a cluster' says how much is "
+        "needed)\n";
   if (!options.time.empty()) text += fmt::format("#SBATCH --time={}\n", options.time);
   if (!options.time.empty() && array) text += fmt::format("#SBATCH --signal=B:USR1@{}\n", kNotice_s);
   if (step.expected_core_s > 0)

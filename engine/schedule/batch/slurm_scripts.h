@@ -19,12 +19,15 @@ namespace ed3r::schedule {
 // The line of common.sh that says how many shards a stage's flights are divided into stands behind this.
 inline constexpr char kShardsLine[] = "\ntasks=";
 
+// Seconds before the time limit at which tasks are told; Slurm may tell them up to a minute earlier.
+inline constexpr int kNotice_s = 120;
+
 struct SlurmOptions {
   std::string program;             // all paths are absolute
   std::vector<std::string> sweep;  // the sweep file and the options that change the plan
   std::string working_dir;         // which paths in them are relative to
   std::string run_dir, cache_dir;
-  std::string partition, account, time;  // as sbatch takes them; "" leaves it to the site
+  std::string partition, account, time, memory;  // as sbatch takes them; "" leaves it to the site
   std::string scratch;              // an expression of the shell, such as $TMPDIR; "": tasks write in place
   std::int64_t shards = 1;          // of the flights of a stage
   std::int64_t cpus = 1;            // per task
