@@ -103,6 +103,36 @@ test("play moves time on, pause stops it, keys step", async () => {
   await page.close();
 });
 
+test("results are grey until they are there, and the end of the bar says why each mission ended", async () => {
+  const page = await open({}, "#map");
+  const stages = () =>
+    page.$eval(".mission:first-child .stages", (node) => [
+      node.textContent,
+      node.querySelectorAll(".future").length,
+    ]);
+  const [before, grey] = await stages();
+  assert.match(before, /will come out .*will look.*will be: /s);
+  assert.ok(grey >= 3, `${grey}`);
+  await page.evaluate(() => {
+    const bar = document.querySelector("#controls input");
+    bar.value = bar.max;
+    bar.dispatchEvent(new Event("input"));
+  });
+  const ends = await page.$$eval(".mission", (list) =>
+    list.map((node) => [node.querySelector(".end").hidden, node.querySelector(".now").textContent]),
+  );
+  assert.equal(ends.length, 2);
+  for (const [hidden, now] of ends) {
+    assert.equal(hidden, false);
+    assert.match(now, /nowended/);
+  }
+  const [after, left] = await stages();
+  assert.doesNotMatch(after, /will /);
+  assert.equal(left, 0);
+  assert.deepEqual(page.faults, []);
+  await page.close();
+});
+
 test("two missions share the page, and no axe fault", async () => {
   const page = await open({ viewport: { width: 1400, height: 1000 }, bypassCSP: true }, "#map");
   assert.equal((await page.$$(".mission")).length, 2);

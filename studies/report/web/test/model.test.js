@@ -1,9 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { filterClaims } from "../src/report/claims.js";
+import { abstractFirst, filterClaims, saying } from "../src/report/claims.js";
 import { groupsOf } from "../src/report/failures.js";
 import { makeModel } from "../src/report/model.js";
-import { touch } from "../src/report/plane.js";
+import { told } from "../src/report/headline.js";
+import { caption, touch, undominated } from "../src/report/plane.js";
 
 // Two arms, two sites, two metrics; the first site is known.
 const data = {
@@ -142,6 +143,43 @@ test("claims pass filters by verdict, arm, metric and certainty", () => {
   assert.deepEqual(pass({ sure: "p05" }), [0, 1]);
   assert.deepEqual(pass({ sure: "p001" }), [0]);
   assert.deepEqual(pass({ sure: "none" }), [2]);
+});
+
+test("claims are found by every word, in any of what they tell", () => {
+  const list = [
+    { id: "C001", arms: "rbs", words: "up to 36.4% less", claim: "100*(1 - a / b)", where: "Abstract" },
+    { id: "C002", arms: "rbs", words: "RBS fails", claim: "msr: rbs < ecd2r", where: "Result 3" },
+  ];
+  const every = { verdict: "all", about: "all", sure: "all" };
+  const ids = (find) => filterClaims(list, { ...every, find }, []).map((claim) => claim.id);
+  assert.deepEqual(ids("rbs FAILS"), ["C002"]);
+  assert.deepEqual(ids("c001"), ["C001"]);
+  assert.deepEqual(ids("less rbs"), []);
+  assert.deepEqual(ids(""), ["C001", "C002"]);
+  assert.deepEqual(
+    abstractFirst([...list].reverse()).map((claim) => claim.id),
+    ["C001", "C002"],
+  );
+  assert.equal(saying(list[0]).main, "“up to 36.4% less”");
+  assert.equal(saying(list[1]).main, "msr: rbs < ecd2r");
+});
+
+test("missions to train on are not counted as judged", () => {
+  const arm = (warmup, missions) => ({ warmup, missions, networks: 3 });
+  assert.equal(
+    told({ arms: [arm(true, 1200), arm(false, 40), arm(false, 2)] }),
+    "42 missions judged, 1,200 to train on, 3 trained networks of each kind",
+  );
+  assert.equal(told({ arms: [{ missions: 1, networks: 1 }] }), "1 mission judged");
+});
+
+test("a caption tells of the dashed line and the diamonds where there are any", () => {
+  const point = (energy, success, paper = null) => ({ x: { value: energy }, y: { value: success }, paper });
+  const best = [point(1, 90), point(2, 80)];
+  assert.equal(undominated(best).length, 1);
+  assert.doesNotMatch(caption(best, { outcome: "all" }), /dashed|diamond|dotted/);
+  assert.match(caption([point(1, 80, {}), point(2, 90)], { outcome: "all" }), /dashed.*diamond.*dotted/);
+  assert.doesNotMatch(caption([point(1, 80), point(2, 90)], { outcome: "1" }), /dashed|better/);
 });
 
 test("boxes touch where they share ground", () => {

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { makeClock } from "../src/viewer/clock.js";
-import { makeMission } from "../src/viewer/mission.js";
+import { endOf, makeMission } from "../src/viewer/mission.js";
 import { energySoFar } from "../src/viewer/timelines.js";
 
 // Two timesteps of 10 s: 4 s of flight, 3 of sensing, 3 of computing; then 4 of flight, 3 of sensing, 3 of transmitting.
@@ -103,6 +103,28 @@ test("LiDARs tell what they met at the moment", () => {
 
 test("the camera's picture is of the last look that has begun", () => {
   assert.deepEqual([0, 3.9, 4, 10, 14].map(mission.lookedAt), [null, null, 0, 0, 1]);
+});
+
+test("at the end, give or take rounding, it has ended", () => {
+  assert.deepEqual([19.99, 20 - 1e-9, 20, 25].map(mission.phase), [
+    "transmitting",
+    "ended",
+    "ended",
+    "ended",
+  ]);
+});
+
+test("an end is told with its last looks and what is known of the cause", () => {
+  const of = (outcome, scs, fire_in_view) =>
+    endOf({ data: { outcome, eta_min: 0.75 }, steps: { scs, fire_in_view }, count: scs.length });
+  assert.equal(
+    of(0, [0.1, 0.8, 0.91], [0, 1, 1]),
+    "Ended in success: it was sure of the fire. Its last two looks: SCS 80.0 % (fire in view), then 91.0 % (fire in view); threshold 75.0 %.",
+  );
+  assert.match(of(1, [0.8, 0.8], [0, 0]), /false alarm.*The fire was in none of these/);
+  assert.match(of(1, [0.8, 0.8], [0, 1]), /false alarm.*The fire was in view, but/);
+  assert.match(of(2, [0.3], [1]), /battery was empty\. No look of 1 reached .* 30\.0 %\. Its only look: SCS/);
+  assert.match(of(2, [0.8, 0.3, 0.2], [1, 0, 0]), /1 of 3 looks reached the threshold, never enough/);
 });
 
 test("energy adds up by part", () => {

@@ -8,15 +8,16 @@ export function figure(id, title, caption) {
   const controls = el("div", { class: "controls" });
   const picture = el("div", { class: "picture" });
   const behind = el("div");
+  const told = el("figcaption", {}, caption);
   const node = el(
     "figure",
     { id, "aria-labelledby": `${id}-title` },
     el("div", { class: "figure-head" }, el("h3", { id: `${id}-title` }, title), controls),
     picture,
-    el("figcaption", {}, caption),
+    told,
     behind,
   );
-  return { node, picture, controls, behind };
+  return { node, picture, controls, behind, told };
 }
 
 /** {root, inner, width, height} of the plotting area. */

@@ -9,6 +9,7 @@ export const START = Object.freeze({
   verdict: "all",
   about: "all", // metric of claims
   sure: "all",
+  find: "", // text in a claim
   theme: "auto",
 });
 

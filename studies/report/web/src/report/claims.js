@@ -1,6 +1,6 @@
 // The paper's claims and what became of them, filtered by verdict, arm, metric and certainty.
 import { el } from "../lib/dom.js";
-import { interval, number, pValue } from "../lib/format.js";
+import { interval, number, plural, pValue } from "../lib/format.js";
 import { sortedTable } from "../lib/table.js";
 import { select } from "./filterbar.js";
 
@@ -23,20 +23,46 @@ export function certaintyOf(claim) {
   return p === null ? ["none"] : p < 0.001 ? ["p001", "p05"] : p < 0.05 ? ["p05"] : ["open"];
 }
 
+/** Every word of `find` stands somewhere in what the claim's row tells. */
+const holds = (claim, find) => {
+  const text = [claim.id, claim.words, claim.claim, claim.where, claim.metric, claim.told, claim.why]
+    .join(" ")
+    .toLowerCase();
+  return find
+    .toLowerCase()
+    .split(/\s+/)
+    .every((word) => text.includes(word));
+};
+
 /** Claims that pass the filters; `names` are the arms chosen, none: all. */
-export const filterClaims = (claims, { verdict, about, sure }, names) =>
+export const filterClaims = (claims, { verdict, about, sure, find = "" }, names) =>
   claims.filter(
     (claim) =>
+      holds(claim, find) &&
       (verdict === "all" || claim.verdict === verdict) &&
       (about === "all" || claim.metric === about) &&
       (sure === "all" || certaintyOf(claim).includes(sure)) &&
       (names.length === 0 || claim.arms.split(" ").some((arm) => names.includes(arm.replace(/-p85$/, "")))),
   );
 
+/** Those of the abstract first, else in the order of the paper. */
+export const abstractFirst = (claims) => [
+  ...claims.filter((claim) => claim.where === "Abstract"),
+  ...claims.filter((claim) => claim.where !== "Abstract"),
+];
+
+/** What is claimed: the paper's words where ours would be a formula. */
+export const saying = (claim) =>
+  claim.words && /[*/]|max\(|min\(/.test(claim.claim)
+    ? { main: `“${claim.words}”`, small: `${claim.claim} (${claim.where})` }
+    : { main: claim.claim, small: `“${claim.words}” (${claim.where})` };
+
 export function claims(model, store) {
   const { claims: study, run } = model.data;
-  const judged = study.list.filter((claim) => claim.verdict !== "not measured");
+  const judged = abstractFirst(study.list.filter((claim) => claim.verdict !== "not measured"));
   if (judged.length === 0) return null;
+  const built = study.by_construction ?? 0;
+  const different = study.counts.reduce((sum, [verdict, n]) => sum + (verdict === "not measured" ? 0 : n), 0);
   const chips = study.counts
     .filter(([verdict]) => verdict !== "not measured")
     .map(([verdict, n]) =>
@@ -48,8 +74,9 @@ export function claims(model, store) {
           "data-verdict": verdict,
           onclick: () => store.toggle("verdict", verdict),
         },
-        el("b", {}, n),
+        el("b", {}, verdict === "reproduced" ? n - built : n),
         ` ${verdict}`,
+        verdict === "reproduced" && built > 0 && ` + ${built} by construction`,
       ),
     );
   const metrics = [...new Set(judged.map((claim) => claim.metric))].sort();
@@ -59,6 +86,10 @@ export function claims(model, store) {
     (value) => store.set({ about: value }),
   );
   const sure = select("Certainty", CERTAINTY, (value) => store.set({ sure: value }));
+  const search = el("input", {
+    type: "search",
+    oninput: () => store.set({ find: search.value.trim() }),
+  });
   const unmeasured = study.counts.find(([verdict]) => verdict === "not measured")?.[1] ?? 0;
   const shown = el("p", { class: "key", "aria-live": "polite" });
   const list = el("div");
@@ -68,14 +99,28 @@ export function claims(model, store) {
     el("h2", {}, "The paper's claims"),
     model.data.compared && el("p", { class: "note" }, `Judged by ${model.data.compared[0]} alone.`),
     el("div", { class: "chips" }, chips),
-    el("div", { class: "choices" }, about.node, sure.node),
+    el("p", { class: "key" }, study.correction, " ", study.p85_note),
+    el(
+      "details",
+      { class: "key" },
+      el("summary", {}, "What the verdicts mean"),
+      el("p", {}, study.rules),
+      el("p", {}, study.luck),
+      built > 0 &&
+        el(
+          "p",
+          {},
+          `${plural(built, "claim holds", "claims hold")} by construction: how the study is set up or an arm is built, no finding.`,
+        ),
+    ),
+    el("div", { class: "choices" }, about.node, sure.node, el("label", { class: "choice" }, "Text ", search)),
     shown,
     list,
     el(
       "p",
       { class: "key" },
-      `Orders and comparisons are paired by scenario (${study.scenarios} of them) and resampled over ${study.networks > 1 ? `${study.networks} trained networks and missions` : "missions"}; p is corrected by Holm over all of them; with ! the opposite is the likelier. ` +
-        "“alone”: how many of the networks by themselves would have given the verdict. (luck): it differs, but no more than one network on the paper's number of missions may; (luck?): networks spread too widely to tell. " +
+      `Orders and comparisons are paired by scenario (${study.scenarios} of them) and resampled over ${study.networks > 1 ? `${study.networks} trained networks and missions` : "missions"}; with ! the claim points the other way. ` +
+        "“one network”: how many of the networks, each with its own missions alone, would have given the verdict; empty where these are too few. " +
         `${unmeasured} claims are not measured by this run. All of it: `,
       el("a", { href: "verdicts.csv" }, "verdicts.csv"),
       study.networks > 1 && [", ", el("a", { href: "by_network.csv" }, "by_network.csv")],
@@ -90,9 +135,10 @@ export function claims(model, store) {
         chip.setAttribute("aria-pressed", String(chip.dataset.verdict === state.verdict));
       about.input.value = state.about;
       sure.input.value = state.sure;
+      if (search.value.trim() !== state.find) search.value = state.find;
       const names = state.arms.map((key) => model.arms.find((arm) => arm.key === key)?.name);
       const found = filterClaims(judged, state, names);
-      shown.textContent = `${found.length} of ${judged.length} judged claims${names.length > 0 ? ", those that speak of the arms chosen" : ""}.`;
+      shown.textContent = `${found.length} of ${judged.length} rows, ${different} different claims (the paper makes some several times)${names.length > 0 ? ", those that speak of the arms chosen" : ""}.`;
       list.replaceChildren(
         sortedTable(columns(model, study), found, { caption: "Claims of the paper and their verdicts" }),
       );
@@ -112,9 +158,10 @@ const columns = (model, study) => [
       el(
         "div",
         { class: "says" },
-        c.claim,
-        el("small", {}, `“${c.words}” (${c.where})`),
+        saying(c).main,
+        el("small", {}, saying(c).small),
         el("small", { class: "why" }, c.why, c.repeats && ` · says the same as ${c.repeats}`),
+        c.p85 && el("small", { class: "why" }, study.p85_note),
       ),
   },
   { label: "paper", text: (c) => (c.paper === null ? "" : number(c.paper, 2)), key: (c) => c.paper },
@@ -125,16 +172,16 @@ const columns = (model, study) => [
   },
   {
     label: "p",
-    text: (c) =>
-      decisive(c) === null
-        ? ""
-        : pValue(decisive(c)) + (c.p_against !== null && c.p_against < (c.p ?? 2) ? "!" : ""),
+    title: "Corrected for all claims (Holm); with ! the claim points the other way",
+    text: (c) => (decisive(c) === null ? "" : pValue(decisive(c)) + (c.other_way ? "!" : "")),
     key: decisive,
   },
   ...(study.networks > 1
     ? [
         {
-          label: "alone",
+          label: "one network",
+          title:
+            "How many of the trained networks, each with its own missions alone, would have given this verdict; a few missions decide less than all. Empty: too few.",
           text: (c) => (c.networks ? `${c.networks[0]} of ${c.networks[1]}` : ""),
           key: (c) => c.networks?.[0],
         },
@@ -143,7 +190,10 @@ const columns = (model, study) => [
   {
     label: "verdict",
     left: true,
-    text: (c) => el("span", { class: `verdict ${classOf(c.verdict)}` }, c.told),
+    text: (c) => [
+      el("span", { class: `verdict ${classOf(c.verdict)}` }, c.told),
+      c.other_way && el("small", { class: "why" }, " points the other way"),
+    ],
     key: (c) => c.told,
   },
 ];

@@ -11,6 +11,7 @@ import { withTooltip } from "../lib/tooltip.js";
 const MEAN = { energy_kj: "total_energy_kj", duration_min: "duration_mean_min", scs_pct: "mscs_pct" };
 const MARGIN = { top: 10, right: 16, bottom: 44, left: 110 };
 const ROW = 58;
+const NAME = 18; // above a row's bars, where there is no room beside them
 
 export function distributions(model, store) {
   const { node, picture, controls, behind } = figure(
@@ -71,8 +72,9 @@ export const outcomeLegend = (store) =>
 function draw(place, rows, store) {
   const narrow = place.clientWidth < 560;
   const margin = { ...MARGIN, left: narrow ? 12 : labelWidth(rows) };
+  const step = narrow ? ROW + NAME : ROW;
   const ground = canvas(place, {
-    height: rows.length * ROW + margin.top + margin.bottom,
+    height: rows.length * step + margin.top + margin.bottom,
     label: "Distribution of missions, one row for each arm",
     margin,
   });
@@ -80,7 +82,7 @@ function draw(place, rows, store) {
   const { scale } = rows[0];
   const x = scaleLinear([scale.from, scale.from + scale.step * scale.bins], [0, ground.width]);
   axes(ground, x, null, { x: `${scale.label}, ${scale.unit}` });
-  rows.forEach((row, i) => ground.inner.append(drawRow(row, i * ROW, x, ground.width, narrow, store)));
+  rows.forEach((row, i) => ground.inner.append(drawRow(row, i * step, x, ground.width, narrow, store)));
   return ground.root;
 }
 
@@ -88,7 +90,7 @@ function drawRow(row, top, x, width, narrow, store) {
   const { counts, scale } = row;
   const totals = counts[0].map((n, bin) => n + counts[1][bin] + counts[2][bin]);
   const y = scaleLinear([0, max(totals) || 1], [0, ROW - 16]);
-  const base = top + ROW - 6;
+  const base = top + (narrow ? NAME : 0) + ROW - 6;
   const group = svg("g", { role: "img", "aria-label": `${row.arm.label}: ${spread(row)}` });
   group.append(svg("line", { class: "ground", x1: 0, x2: width, y1: base, y2: base }));
   totals.forEach((total, bin) => {

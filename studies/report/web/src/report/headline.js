@@ -1,11 +1,11 @@
 // The first screen: the study's question, the answer, the main metrics beside the paper's.
 import { scaleLinear } from "d3-scale";
 import { el, svg } from "../lib/dom.js";
-import { count, interval, number, withInterval } from "../lib/format.js";
+import { count, interval, number, plural, withInterval } from "../lib/format.js";
 import { order } from "../lib/table.js";
 import { withTooltip } from "../lib/tooltip.js";
 
-const MAIN = ["total_energy_kj", "duration_mean_min", "msr_pct", "fp_pct", "bd_pct", "wer_pct", "mscs_pct"];
+const MAIN = ["total_energy_kj", "msr_pct", "duration_mean_min", "fp_pct", "bd_pct", "wer_pct", "mscs_pct"];
 
 const ABBREVIATIONS =
   "Means of a mission's energy and duration. MSR: missions that ended in success. FP: in a false alarm. BD: with an empty battery. " +
@@ -58,10 +58,14 @@ function answerOf(data) {
     : "No missions yet.";
 }
 
-function told(data) {
-  const flown = data.arms.reduce((sum, arm) => sum + arm.missions, 0);
+/** "3,920 missions judged, 20,400 to train on". */
+export function told(data) {
+  const flown = (warmup) =>
+    data.arms.reduce((sum, arm) => sum + (Boolean(arm.warmup) === warmup ? arm.missions : 0), 0);
+  const judged = flown(false),
+    warm = flown(true);
   const networks = Math.max(...data.arms.map((arm) => arm.networks), 0);
-  return `${count(flown)} missions flown${networks > 1 ? `, ${networks} trained networks of each kind` : ""}`;
+  return `${plural(judged, "mission")} judged${warm > 0 ? `, ${count(warm)} to train on` : ""}${networks > 1 ? `, ${networks} trained networks of each kind` : ""}`;
 }
 
 const filtered = (state) => state.site !== "all" || state.outcome !== "all";

@@ -30,21 +30,34 @@ const SHAPES = [
 const MARGIN = { top: 30, right: 24, bottom: 46, left: 46 };
 
 export function plane(model, store) {
-  const { node, picture, behind } = figure(
-    "plane",
-    "Energy against success",
-    "Each mark is an arm: mean energy of a mission and the share of missions that ended as chosen (success, unless the " +
-      "outcome filter says otherwise), with 95 % intervals on both axes. For success, up and left is better; the dashed line " +
-      "joins the arms that no other beats in both means, and is as uncertain as they are. Hollow diamonds are the paper's values.",
-  );
+  const { node, picture, behind, told } = figure("plane", "Energy against success", "");
   return {
     node,
     update(state) {
       const points = pointsOf(model, state);
       picture.replaceChildren(draw(picture, points, state, store));
+      told.textContent = caption(points, state);
       behind.replaceChildren(numbers(points));
     },
   };
+}
+
+const ofSuccess = (state) => state.outcome === "all" || state.outcome === "0";
+
+/** Of what is drawn, and no more. */
+export function caption(points, state) {
+  const share = ofSuccess(state) ? "in success" : "as chosen above";
+  return [
+    `Each mark is an arm: mean energy of a mission and the share of missions that ended ${share}, with 95 % intervals on both axes.`,
+    ofSuccess(state) && "Up and left is better.",
+    ofSuccess(state) &&
+      undominated(points).length > 1 &&
+      "The dashed line joins the arms that no other beats in both means, and is as uncertain as they are.",
+    points.some((p) => p.paper) &&
+      "A hollow diamond is the paper's value, a dotted line ties it to our mark of the same arm.",
+  ]
+    .filter(Boolean)
+    .join(" ");
 }
 
 function pointsOf(model, state) {
@@ -86,15 +99,16 @@ function draw(place, points, state, store) {
     x: `energy of a mission, ${points[0].energy.unit}`,
     y: `${points[0].share.label}, %`,
   });
-  if (state.outcome === "all" || state.outcome === "0") frontier(ground, points, x, y);
+  if (ofSuccess(state)) frontier(ground, points, x, y);
   for (const p of points) if (p.paper) theirs(ground, p, x, y);
   for (const p of points) ours(ground, p, x, y, store, state);
   label(ground, points, x, y, narrow);
   return ground.root;
 }
 
-function frontier(ground, points, x, y) {
-  const best = points
+/** Arms that no other beats in both means, the most frugal first. */
+export const undominated = (points) =>
+  points
     .filter(
       (p) =>
         !points.some(
@@ -106,6 +120,10 @@ function frontier(ground, points, x, y) {
         ),
     )
     .sort((a, b) => a.x.value - b.x.value);
+
+function frontier(ground, points, x, y) {
+  const best = undominated(points);
+  if (best.length < 2) return;
   ground.inner.append(
     svg("path", { class: "frontier", d: `M${best.map((p) => `${x(p.x.value)},${y(p.y.value)}`).join("L")}` }),
   );

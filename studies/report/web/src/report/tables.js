@@ -72,6 +72,7 @@ function tableNode(model, table) {
     { open: table.id === "arms" ? undefined : true, id: `table-${table.id}` },
     el("summary", {}, el("h3", {}, table.title)),
     sortedTable(columns, rows, { caption: table.title }),
+    table.note && el("p", { class: "key" }, table.note),
     el(
       "p",
       { class: "files" },

@@ -1,6 +1,7 @@
 import "../viewer.css";
 import { button, el } from "../lib/dom.js";
 import { number } from "../lib/format.js";
+import { shareColour } from "../lib/palette.js";
 import { isDark } from "../lib/relief.js";
 import { makeClock } from "./clock.js";
 import { makeMap } from "./map2d.js";
@@ -40,7 +41,7 @@ const columns = data.missions.map((missionData) => {
       !missionData.identical && el("p", { class: "note" }, "This flight differs from the stored record."),
     ),
     el("div", { class: "seen" }, view.node, camera?.node),
-    !flat && el("p", { class: "key legend" }, rayLegend(missionData.lidar)),
+    el("p", { class: "key legend" }, pathLegend(), !flat && rayLegend(missionData.lidar)),
     panel.node,
     lines.node,
   );
@@ -103,6 +104,23 @@ document.getElementById("app").append(
     !flat && el("div", { class: "looks", role: "group", "aria-label": "Point of view" }, looks),
   ),
 );
+
+function pathLegend() {
+  const ramp = [0, 0.25, 0.5, 0.75, 1].map((share) => shareColour(share).fill).join(",");
+  return [
+    el(
+      "span",
+      {},
+      "path and stops: SCS of the look, 0 ",
+      el("span", { class: "ramp-colours", style: `background:linear-gradient(90deg,${ramp})` }),
+      " 1",
+      !flat && "; faint: still to be flown",
+    ),
+    el("span", {}, flat ? "brown circles: other places for a fire" : "brown rings: other places for a fire"),
+    !flat && el("span", {}, "pyramid: what the camera sees"),
+    el("span", {}, "dashed line: radio link to the base station"),
+  ];
+}
 
 function rayLegend({ range_m }) {
   return [

@@ -26,8 +26,12 @@ export function makeMission(data) {
 
   const moving = (i) => steps.horizontal_s[i] + steps.ascent_s[i] + steps.descent_s[i] + steps.turning_s[i];
 
+  // A bar's position and a sum of parts are rounded.
+  const ended = (time) => time >= data.duration_s - 1e-3;
+
   /** What the robot does at `time`. */
   function phase(time) {
+    if (ended(time)) return "ended";
     const i = stepAt(time);
     let rest = Math.min(time, data.duration_s) - steps.begin_s[i];
     for (const [name, length] of [
@@ -39,7 +43,7 @@ export function makeMission(data) {
       if (rest < length) return name;
       rest -= length;
     }
-    return time >= data.duration_s ? "ended" : "transmitting";
+    return "transmitting";
   }
 
   /** Where the robot is; after a timestep's flight the pose that was stored for it. */
@@ -67,7 +71,7 @@ export function makeMission(data) {
 
   /** SCS of the last finished timestep at `time`, null before. */
   const scs = (time) => {
-    const i = time >= data.duration_s ? count - 1 : stepAt(time) - 1;
+    const i = ended(time) ? count - 1 : stepAt(time) - 1;
     return i < 0 ? null : steps.scs[i];
   };
 
@@ -94,7 +98,7 @@ export function makeMission(data) {
 
   /** Share of the battery left when the last timestep had ended. */
   const battery = (time) => {
-    const i = time >= data.duration_s ? count - 1 : stepAt(time) - 1;
+    const i = ended(time) ? count - 1 : stepAt(time) - 1;
     return i < 0 ? 1 : steps.battery_j[i] / data.battery_j;
   };
 
@@ -104,5 +108,31 @@ export function makeMission(data) {
     ...steps.k.map((_, i) => ({ x: steps.x_m[i], y: steps.y_m[i], z: steps.z_m[i], step: i })),
   ];
 
-  return { data, steps, count, stepAt, phase, pose, scs, path, moving, lookedAt, lidarAt, battery };
+  return { data, steps, count, stepAt, phase, ended, pose, scs, path, moving, lookedAt, lidarAt, battery };
+}
+
+const percent = (share) => `${(100 * share).toFixed(1)} %`;
+
+/** Why the mission ended, as far as its record tells. */
+export function endOf({ data, steps, count }) {
+  const last = [count - 2, count - 1].filter((i) => i >= 0);
+  const looks = last
+    .map((i) => `${percent(steps.scs[i])} (fire ${steps.fire_in_view[i] ? "" : "not "}in view)`)
+    .join(", then ");
+  const reliable = steps.scs.filter((scs) => scs >= data.eta_min).length;
+  const threshold = `threshold ${percent(data.eta_min)}`;
+  const told = `${last.length > 1 ? "Its last two looks" : "Its only look"}: SCS ${looks}; ${threshold}.`;
+  if (data.outcome === 0) return `Ended in success: it was sure of the fire. ${told}`;
+  if (data.outcome === 1) {
+    const blind = last.every((i) => !steps.fire_in_view[i]);
+    const cause = blind
+      ? "The fire was in none of these, so that it took something else for one."
+      : "The fire was in view, but without what else it took for fire or smoke these looks would not have been sure.";
+    return `Ended in a false alarm: it was sure of a fire, but what it saw was not the fire. ${told} ${cause}`;
+  }
+  const sure =
+    reliable === 0
+      ? `No look of ${count} reached the threshold; the surest had ${percent(Math.max(...steps.scs))}.`
+      : `${reliable} of ${count} looks reached the threshold, never enough in a row.`;
+  return `Ended because the battery was empty. ${sure} ${told}`;
 }

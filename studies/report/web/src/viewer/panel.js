@@ -3,14 +3,26 @@ import { scaleLinear } from "d3-scale";
 import { el, svg } from "../lib/dom.js";
 import { number } from "../lib/format.js";
 import { shareColour } from "../lib/palette.js";
-import { EXECUTION_LABELS } from "./mission.js";
+import { endOf, EXECUTION_LABELS } from "./mission.js";
+
+const WORDS =
+  "random: a motion drawn by chance, with probability ε (epsilon, which falls while missions go on); greedy: the candidate of the highest predicted reward; " +
+  "admitted: candidates that stay within the world and the ranges of the moment. Grey: still to come.";
 
 export function decisionPanel(mission) {
   const now = el("div", { class: "now" });
   const stage1 = el("div", { class: "stage" });
   const stage2 = el("div", { class: "stage" });
-  const node = el("div", { class: "panel" }, now, el("div", { class: "stages" }, stage1, stage2));
-  let shown = -1;
+  const end = el("p", { class: "end", role: "status", hidden: true }, endOf(mission));
+  const node = el(
+    "div",
+    { class: "panel" },
+    now,
+    end,
+    el("div", { class: "stages" }, stage1, stage2),
+    el("p", { class: "key" }, WORDS),
+  );
+  let shown = "";
   return {
     node,
     update(time) {
@@ -21,10 +33,15 @@ export function decisionPanel(mission) {
       node.dataset.y = pose.y;
       node.dataset.z = pose.z;
       node.dataset.step = i + 1;
-      if (i === shown) return;
-      shown = i;
-      stage1.replaceChildren(...stageOne(mission, i));
-      stage2.replaceChildren(...stageTwo(mission, i));
+      // What it did and found is told as such once it has happened.
+      const looked = mission.lookedAt(time) === i;
+      const ended = mission.ended(time);
+      end.hidden = !ended;
+      const now_shown = `${i} ${looked} ${ended}`;
+      if (now_shown === shown) return;
+      shown = now_shown;
+      stage1.replaceChildren(...stageOne(mission, i, ended));
+      stage2.replaceChildren(...stageTwo(mission, i, looked, ended));
     },
   };
 }
@@ -37,7 +54,7 @@ function nowText(mission, time, pose, i) {
   return [
     value("timestep", `${i + 1} of ${mission.count}`),
     value("now", mission.phase(time)),
-    value("SCS", scs === null ? "–" : `${number(100 * scs, 1)} %`),
+    value("SCS, last look", scs === null ? "–" : `${number(100 * scs, 1)} %`),
     value("threshold", `${number(100 * data.eta_min, 0)} %`),
     value("battery", `${number(100 * mission.battery(time), 1)} %`),
     value("rate", `${number(steps.rate_bps[i] / 1e6, 1)} Mbit/s`),
@@ -79,7 +96,7 @@ export function cameraPicture(mission) {
   };
 }
 
-function stageOne(mission, i) {
+function stageOne(mission, i, ended) {
   const { steps } = mission;
   const decision = mission.data.decisions[i];
   const head = el("h3", {}, "Stage 1 · the remote controller moves the robot");
@@ -102,7 +119,11 @@ function stageOne(mission, i) {
       { class: "key" },
       decision.candidates.length > 0 && `${decision.drawn} candidates, ${decision.admitted} admitted; `,
       expected !== null && `expected ${number(expected, 3)}, `,
-      `came out ${number(steps.reward[i], 3)}${steps.halted[i] ? "; halted by an obstacle" : ""}`,
+      el(
+        "span",
+        { class: ended ? undefined : "future" },
+        `${ended ? "came out" : "will come out"} ${number(steps.reward[i], 3)}${steps.halted[i] ? "; halted by an obstacle" : ""}`,
+      ),
     ),
   ];
 }
@@ -162,7 +183,7 @@ const reasons = (text, drawn) =>
     .map((line) => line.replace(/^ {2}/, ""))
     .join("\n");
 
-function stageTwo(mission, i) {
+function stageTwo(mission, i, looked, ended) {
   const { steps, data } = mission;
   const decision = data.decisions[i];
   const done = EXECUTION_LABELS[steps.execution[i]];
@@ -172,12 +193,17 @@ function stageTwo(mission, i) {
     high = Math.max(1e-9, ...known);
   const width = scaleLinear([low, high], [2, 100]);
   return [
-    el("h3", {}, "Stage 2 · the robot looks"),
-    el("p", {}, el("b", {}, done), steps.execution_random[i] ? ", at random" : ""),
+    el("h3", {}, `Stage 2 · the robot ${looked ? "looks" : "will look"}`),
+    el(
+      "p",
+      { class: looked ? undefined : "future" },
+      el("b", {}, done),
+      steps.execution_random[i] ? ", at random" : "",
+    ),
     known.length > 0 &&
       el(
         "div",
-        { class: "predictions" },
+        { class: looked ? "predictions" : "predictions future" },
         rewards.map((reward, e) =>
           reward === null
             ? null
@@ -194,11 +220,12 @@ function stageTwo(mission, i) {
               ),
         ),
       ),
-    decision && el("pre", {}, reasons(decision.execution_text, known.length > 0)),
+    decision &&
+      el("pre", { class: looked ? undefined : "future" }, reasons(decision.execution_text, known.length > 0)),
     el(
       "p",
-      { class: "key" },
-      `${data.camera.frames} frames: mean ${number(steps.confidence_mean[i], 3)}, sd ${number(steps.confidence_sd[i], 3)}, SCS ${number(steps.scs[i], 3)}; fire ${steps.fire_in_view[i] ? "" : "not "}in view; ${number(steps.total_j[i], 0)} J`,
+      { class: ended ? "key" : "key future" },
+      `${ended ? "" : "will be: "}${data.camera.frames} frames: mean ${number(steps.confidence_mean[i], 3)}, sd ${number(steps.confidence_sd[i], 3)}, SCS ${number(steps.scs[i], 3)}; fire ${steps.fire_in_view[i] ? "" : "not "}in view; ${number(steps.total_j[i], 0)} J`,
     ),
   ].filter(Boolean);
 }

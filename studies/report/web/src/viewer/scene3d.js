@@ -118,7 +118,7 @@ export function makeScene(world, mission, dark) {
       const pose = mission.pose(time);
       robot.move(pose, mission.phase(time));
       rays.move(pose, time);
-      path.until(mission.stepAt(time), time >= mission.data.duration_s);
+      path.until(mission.stepAt(time), mission.ended(time));
       fire.flicker(time);
       moveLink(link, world, mission, pose, time);
       if (mode !== "overview") place();
