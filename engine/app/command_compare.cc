@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/app/commands.h"
+#include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/store/reader.h"
@@ -95,7 +96,7 @@ void WritePage(const std::vector<report::ComparedRun>& runs, const variants::Var
                const std::vector<std::string>& departures, const Options& options) {
   const report::FoundBundle found = report::FindWebBundle("report");
   if (!found.bundle) {
-    fmt::print(stderr, "note: {}\n", found.why_not);
+    Tell("note: {}", found.why_not);
     return;
   }
   const std::string command = fmt::format("ed3r compare {} --out {}{}", fmt::join(options.dirs, " "),

@@ -172,16 +172,15 @@ class PictureTable {
   void AddFailure(const std::string& path, const std::string& why) {
     ++failed_;
     if (in_json_) json_[std::filesystem::path(path).filename().string()] = {{"error", why}};
-    fmt::print(stderr, "{}\n", OneLine(why));
+    Tell("{}", OneLine(why));
   }
 
   int Finish(const detection::PictureList& list) const {
     // Names are bytes; what is no text among them is replaced.
     if (in_json_) fmt::print("{}\n", json_.dump(2, ' ', false, Json::error_handler_t::replace));
-    if (list.passed_over > 0)
-      fmt::print(stderr, "note: {} of other kinds passed over\n", Counted(list.passed_over, "file"));
+    if (list.passed_over > 0) Tell("note: {} of other kinds passed over", Counted(list.passed_over, "file"));
     if (failed_ == 0) return kDone;
-    fmt::print(stderr, "{} without a score, {} scored\n", Counted(failed_, "picture"), read_);
+    Tell("{} without a score, {} scored", Counted(failed_, "picture"), read_);
     return read_ == 0 ? kBadInput : kMissionsFailed;
   }
 
@@ -224,10 +223,10 @@ void NoteBuiltin(const DetectorConfig& config) {
   if (config.full == "builtin") built_in.emplace_back("Full");
   if (config.quantized == "builtin") built_in.emplace_back("Quantized");
   if (!built_in.empty())
-    fmt::print(stderr,
-               "note: {} built in and learnt from rendered frames alone; of photographs the confidence tells "
-               "little. Your own: --set perception.detector.full=mine.onnx\n",
-               built_in.size() > 1 ? "both networks are" : built_in.front() + " is");
+    Tell(
+        "note: {} built in and learnt from rendered frames alone; of photographs the confidence tells "
+        "little. Your own: --set perception.detector.full=mine.onnx",
+        built_in.size() > 1 ? "both networks are" : built_in.front() + " is");
 }
 
 int Detect(const Options& options) {

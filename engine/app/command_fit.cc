@@ -7,6 +7,7 @@
 
 #include "engine/app/commands.h"
 #include "engine/app/perception_looks.h"
+#include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/message.h"
@@ -85,7 +86,7 @@ int Fit(Options options) {
     fmt::print("{}\n", fit::ToJson(report).dump(2));
   else
     fit::PrintReport(report, std::cout);
-  if (drawn.outcome != figures::Drawing::kDone) fmt::print(stderr, "no figures: {}\n", drawn.message);
+  if (drawn.outcome != figures::Drawing::kDone) Tell("no figures: {}", drawn.message);
   return drawn.outcome == figures::Drawing::kFailed ? kFailedInside : kDone;
 }
 

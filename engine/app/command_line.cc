@@ -1,19 +1,35 @@
 #include "engine/app/command_line.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <type_traits>
 #include <vector>
 
 namespace ed3r::app {
+namespace {
+
+// CLI11 takes '' for the default and 010 for eight.
+std::string NoDecimalNumber(const std::string& text) {
+  const std::string digits = text.substr(text.starts_with('-') ? 1 : 0);
+  const bool decimal = !digits.empty() && (digits == "0" || digits.front() != '0') &&
+                       std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return decimal ? "" : fmt::format("'{}' is not allowed; allowed: a whole number", text);
+}
+
+}  // namespace
 
 Argument& Argument::Required() {
   option_->required();
   return *this;
 }
 
-Argument& Argument::Path() {
-  option_->check(CLI::Validator(
-      [](std::string& text) { return std::string(text.empty() ? "'' is not allowed; allowed: a path" : ""); },
-      ""));
+Argument& Argument::Path() { return NotEmpty("a path"); }
+
+Argument& Argument::NotEmpty(const std::string& allowed) {
+  const std::string refusal = "'' is not allowed; allowed: " + allowed;
+  option_->check(CLI::Validator([refusal](std::string& text) { return text.empty() ? refusal : ""; }, ""));
   return *this;
 }
 
@@ -47,7 +63,10 @@ Argument& Argument::Excludes(const std::string& other) {
 
 template <class Value>
 Argument CommandLine::Option(const std::string& name, Value& value, const std::string& about) {
-  return Argument(command_, command_->add_option(name, value, about));
+  CLI::Option* option = command_->add_option(name, value, about);
+  if constexpr (std::is_integral_v<Value> || std::is_same_v<Value, std::vector<int>>)
+    option->check(CLI::Validator([](std::string& text) { return NoDecimalNumber(text); }, ""));
+  return Argument(command_, option);
 }
 
 template Argument CommandLine::Option(const std::string&, std::string&, const std::string&);

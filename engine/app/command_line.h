@@ -17,7 +17,8 @@ class Argument {
  public:
   explicit Argument(CLI::App* command, CLI::Option* option) : command_(command), option_(option) {}
   Argument& Required();
-  Argument& Path();      // not '': an empty path is a variable that was not set
+  Argument& Path();  // not '': an empty path is a variable that was not set
+  Argument& NotEmpty(const std::string& allowed);
   Argument& OneValue();  // of a list: '--set A --set B', so that a positional argument may follow
   Argument& Range(std::int64_t low, std::int64_t high);
   Argument& Numbers(const std::string& shown);  // of a list: '1,4', '1 4' or the option twice

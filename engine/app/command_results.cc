@@ -154,9 +154,9 @@ int MakeReportOf(const ReportOptions& options) {
                report::ReportText(report), folder.out, report.tables.size(), written.figures);
   std::fflush(stdout);  // before what goes to the other stream
   for (const std::string& note : {written.note, written.page_note, watched.note})
-    if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
+    if (!note.empty()) Tell("note: {}", note);
   if (written.plot_error.empty()) return kDone;
-  fmt::print(stderr, "figures: drawing failed: {}\n", written.plot_error);
+  Tell("figures: drawing failed: {}", written.plot_error);
   return kFailedInside;
 }
 

@@ -60,8 +60,8 @@ void PrintSession(const schedule::SweepSummary& summary, const std::string& dir)
 
 int ToldEnd() {
   const bool requeue = AsksRequeue(InterruptSignal());
-  fmt::print(stderr, "{}: what is stored is kept; the same command continues\n",
-             requeue ? fmt::format("ended by {}", SignalName(InterruptSignal())) : "interrupted");
+  Tell("{}: what is stored is kept; the same command continues",
+       requeue ? fmt::format("ended by {}", SignalName(InterruptSignal())) : "interrupted");
   return requeue ? kRequeue : kInterrupted;
 }
 

@@ -156,8 +156,8 @@ int Submit(const fs::path& folder, const std::vector<std::string>& arguments) {
   while (waitpid(child, &status, 0) < 0)
     if (errno != EINTR) throw InternalError(fmt::format("{}: {}", command.front(), std::strerror(errno)));
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return kDone;
-  fmt::print(stderr, "{}: ended with {}; what it has submitted stays\n", command.front(),
-             WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
+  Tell("{}: ended with {}; what it has submitted stays", command.front(),
+       WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
   return kFailedInside;
 }
 

@@ -77,7 +77,7 @@ int RunCommand(int argc, char** argv, CLI::App& program) {
     return kBadInput;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
-    fmt::print(stderr, "{}\n", OneLine("ed3r: " + Refusal(program, error)));
+    Tell("{}", OneLine("ed3r: " + Refusal(program, error)));
     return kBadInput;
   }
 }
@@ -90,29 +90,28 @@ int Main(int argc, char** argv) {
   try {
     return RunCommand(argc, argv, program);
   } catch (const kernels::SimdLevelError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    Tell("{}", error.what());
     return kBadInput;
   } catch (const UserError& error) {
-    fmt::print(stderr, "{}\n", OneLine(error.what()));
+    Tell("{}", OneLine(error.what()));
     return kBadInput;
   } catch (const std::filesystem::filesystem_error& error) {
-    fmt::print(stderr, "{}\n",
-               OneLine(fmt::format("{}: {}", error.path1().string(), error.code().message())));
+    Tell("{}", OneLine(fmt::format("{}: {}", error.path1().string(), error.code().message())));
     return kBadInput;
   } catch (const std::system_error& error) {
     if (std::ferror(stdout) == 0)
-      fmt::print(stderr, "{}\n", OneLine(fmt::format("ed3r: failed inside: {}", error.what())));
+      Tell("{}", OneLine(fmt::format("ed3r: failed inside: {}", error.what())));
     else
       output_error = error.code().value();  // told at the end
     return kFailedInside;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "ed3r: out of memory\n");
+    Tell("ed3r: out of memory");
     return kFailedInside;
   } catch (const store::StoreError& error) {
-    fmt::print(stderr, "{}\n", OneLine(error.what()));
+    Tell("{}", OneLine(error.what()));
     return kFailedInside;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", OneLine(fmt::format("ed3r: failed inside: {}", error.what())));
+    Tell("{}", OneLine(fmt::format("ed3r: failed inside: {}", error.what())));
     return kFailedInside;
   }
 }
@@ -124,8 +123,8 @@ int Delivered(int status) {
   const bool flushed = std::fflush(stdout) == 0;
   const int error = output_error != 0 ? output_error : errno;
   if (flushed && std::ferror(stdout) == 0 && std::cout) return status;
-  fmt::print(stderr, "ed3r: standard output cannot be written{}{}\n", error == 0 ? "" : ": ",
-             error == 0 ? "" : std::strerror(error));
+  Tell("ed3r: standard output cannot be written{}{}", error == 0 ? "" : ": ",
+       error == 0 ? "" : std::strerror(error));
   return status == kDone ? kFailedInside : status;
 }
 

@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <cstdio>
+#include <iterator>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/core/suggest.h"
@@ -21,6 +24,15 @@ inline std::string Counted(std::int64_t count, std::string_view noun) {
 inline std::string DidYouMean(std::string_view word, const std::vector<std::string>& known) {
   const std::string nearest = NearestWord(word, known);
   return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
+}
+
+// One line to standard error. Where that cannot be written the line is lost, and nothing else: fmt::print would throw.
+template <class... Values>
+void Tell(fmt::format_string<Values...> format, Values&&... values) {
+  fmt::memory_buffer line;  // needs no memory for a short one
+  fmt::format_to(std::back_inserter(line), format, std::forward<Values>(values)...);
+  line.push_back('\n');
+  std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
 }  // namespace ed3r::app

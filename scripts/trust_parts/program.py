@@ -63,6 +63,11 @@ class Trial:
             self.fault(where, what)
         return holds
 
+    def some(self, cases, large):
+        """All of them in the large form, a fifth, drawn, in the small one."""
+        cases = list(cases)
+        return cases if large else self.random.sample(cases, -(-len(cases) // 5))
+
     def fresh(self, name):
         """A path in this trial's folder that nothing stands at yet."""
         self._fresh += 1

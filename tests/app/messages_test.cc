@@ -55,6 +55,28 @@ TEST(MessagesTest, AShardThatIsNoneIsRefusedAndBothWaysOfCountingAreTold) {
   EXPECT_NE(Help("run").find("0/N is N/N"), std::string::npos);
 }
 
+TEST(MessagesTest, ANumberIsWrittenInDigitsOrRefused) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "run").string();
+  const std::string run = fmt::format("run {} --missions 4 --out {} ", kRbs, out);
+  for (const char* threads : {"", "010", "0x2", " 2", "2.0", "-"})
+    ExpectRefusal(
+        fmt::format("{}--threads '{}'", run, threads),
+        fmt::format("ed3r: --threads: '{}' is not allowed; allowed: a whole number; 'ed3r --help' tells more",
+                    threads));
+  ExpectRefusal(run + "--seed ''",
+                "ed3r: --seed: '' is not allowed; allowed: a whole number; 'ed3r --help' tells more");
+  EXPECT_FALSE(fs::exists(out));
+}
+
+TEST(MessagesTest, ARefusalThatNobodyCanReadIsStillARefusal) {
+  for (const char* closed : {"2>/dev/full", "2>&-", ">&- 2>&-"}) {
+    const int status = std::system(fmt::format("{} runn {}", ED3R_BINARY, closed).c_str());
+    ASSERT_TRUE(WIFEXITED(status)) << closed;
+    EXPECT_EQ(WEXITSTATUS(status), 2) << closed;
+  }
+}
+
 TEST(MessagesTest, OneIsNotWrittenAsMany) {
   const ScratchFolder scratch;
   const CommandResult run =
