@@ -123,7 +123,10 @@ test("an end is told with its last looks and what is known of the cause", () => 
   );
   assert.match(of(1, [0.8, 0.8], [0, 0]), /false alarm.*The fire was in none of these/);
   assert.match(of(1, [0.8, 0.8], [0, 1]), /false alarm.*The fire was in view, but/);
-  assert.match(of(2, [0.3], [1]), /battery was empty\. No look of 1 reached .* 30\.0 %\. Its only look: SCS/);
+  assert.match(
+    of(2, [0.3], [1]),
+    /battery was empty\. No look of 1 reached .* 30\.0 %\. The fire was in view in 1 of 1\. Its only look: SCS/,
+  );
   assert.match(of(2, [0.8, 0.3, 0.2], [1, 0, 0]), /1 of 3 looks reached the threshold, never enough/);
 });
 

@@ -134,5 +134,6 @@ export function endOf({ data, steps, count }) {
     reliable === 0
       ? `No look of ${count} reached the threshold; the surest had ${percent(Math.max(...steps.scs))}.`
       : `${reliable} of ${count} looks reached the threshold, never enough in a row.`;
-  return `Ended because the battery was empty. ${sure} ${told}`;
+  const seen = steps.fire_in_view.filter(Boolean).length;
+  return `Ended because the battery was empty. ${sure} The fire was in view in ${seen} of ${count}. ${told}`;
 }
