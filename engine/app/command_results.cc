@@ -152,7 +152,7 @@ int MakeReportOf(const ReportOptions& options) {
   else
     fmt::print("{}\n{}: index.html, report.txt, report.json, metrics.csv, {} tables, {} figures\n",
                report::ReportText(report), folder.out, report.tables.size(), written.figures);
-  std::fflush(stdout);  // before what goes to the other stream
+  FlushOutput();
   for (const std::string& note : {written.note, written.page_note, watched.note})
     if (!note.empty()) Tell("note: {}", note);
   if (written.plot_error.empty()) return kDone;
@@ -202,10 +202,9 @@ Command AddDigest(Program& program) {
                                      .dump(2));
             else
               fmt::print("{}\n", digest);
-            std::fflush(stdout);  // before what goes to the other stream
+            FlushOutput();
             if (missions < planned)
-              fmt::print(stderr, "note: this is the digest of {} of {} planned missions\n", missions,
-                         planned);
+              Tell("note: this is the digest of {} of {} planned missions", missions, planned);
             return kDone;
           }};
 }

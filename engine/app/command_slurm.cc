@@ -147,7 +147,7 @@ int Submit(const fs::path& folder, const std::vector<std::string>& arguments) {
   std::vector<char*> words;
   for (std::string& word : command) words.push_back(word.data());
   words.push_back(nullptr);
-  std::fflush(stdout);  // before what the script says
+  FlushOutput();  // before what the script says
   pid_t child = 0;
   if (const int error = posix_spawn(&child, words.front(), nullptr, nullptr, words.data(), environ);
       error != 0)

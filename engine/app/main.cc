@@ -140,6 +140,12 @@ void FillStandardDescriptors() {
 }
 
 }  // namespace
+
+void FlushOutput() {
+  if (std::fflush(stdout) != 0 && output_error == 0)
+    output_error = errno;  // a second flush would not know it
+}
+
 }  // namespace ed3r::app
 
 int main(int argc, char** argv) {

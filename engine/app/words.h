@@ -35,4 +35,7 @@ void Tell(fmt::format_string<Values...> format, Values&&... values) {
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
+// What was printed goes out before what the other stream says. Where it cannot, the end of the program tells why.
+void FlushOutput();
+
 }  // namespace ed3r::app

@@ -176,6 +176,10 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::Fail(int error) {
+  // The system has failed, not the one who named the place.
+  if (error == ENOSPC || error == EDQUOT || error == EIO)
+    throw std::system_error(error, std::generic_category(),
+                            fmt::format("{}: cannot be written", path_.string()));
   throw UserError(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(error)));
 }
 

@@ -8,12 +8,17 @@
 #include "engine/core/csv_table.h"
 #include "studies/claims/equivalence.h"
 #include "studies/metrics/number_text.h"
+#include "studies/paper/arms.h"
 #include "studies/tables/layout.h"
+#include "studies/tables/names.h"
+#include "studies/tables/study_table.h"
 
 namespace ed3r::claims {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kP85Ending = "-p85";
 
 constexpr int kIdWidth = 5, kClaimWidth = 44, kPaperWidth = 8, kOursWidth = 25, kPWidth = 8,
               kVerdictWidth = 17;
@@ -51,11 +56,12 @@ std::string OursText(const Judgement& judged, bool sign) {
 }
 
 // The smaller of the two p-values, with '!' where it speaks against the claim.
-std::string PText(const Judgement& judged) {
+std::string PText(const JudgedClaim& claim) {
+  const Judgement& judged = claim.all;
   if (std::isnan(judged.p_holm)) return "";
-  const bool against = judged.p_against_holm < judged.p_holm;
-  const double p = against ? judged.p_against_holm : judged.p_holm;
-  return (p < 0.0001 ? "<0.0001" : fmt::format("{:.{}f}", p, p < 0.01 ? 4 : 3)) + (against ? "!" : " ");
+  const double p = std::min(judged.p_holm, judged.p_against_holm);
+  return (p < 0.0001 ? "<0.0001" : fmt::format("{:.{}f}", p, p < 0.01 ? 4 : 3)) +
+         (PointsTheOtherWay(claim) ? "!" : " ");
 }
 
 // "2r 3d": verdicts of the networks alone.
@@ -89,7 +95,7 @@ std::string Table(const ClaimStudy& study) {
     const std::string paper = order ? Short(judged.all.paper, true) : judged.claim.paper_value;
     const std::string about = judged.claim.source == "about" ? "~" : "";
     text += Line(judged.claim.id, ClaimInWords(judged.claim, kClaimWidth - 1), about + paper,
-                 OursText(judged.all, order), PText(judged.all), NameWithLuck(judged), NetworksText(judged));
+                 OursText(judged.all, order), PText(judged), NameWithLuck(judged), NetworksText(judged));
   }
   return text;
 }
@@ -147,17 +153,19 @@ constexpr const char* kOrderNote =
     "An order shows the difference in its least certain part, + as claimed, and the paper's in the same "
     "part; "
     "verdicts.csv tells which, and why each verdict. Differences are paired over scenarios; p values are "
-    "two-sided, "
-    "corrected by Holm over the {} different directional claims; with ! the opposite of the claim is the "
-    "likelier.";
+    "two-sided; with ! the claim points the other way.";
+constexpr const char* kCorrectionNote =
+    "Intervals are for each claim alone; p is corrected by Holm for all {} different directional claims, so "
+    "that an "
+    "interval may leave out 0 beside a p above 0.05: the p decides.";
 constexpr const char* kLuckNote =
-    "(luck): it differs, but no more than one network on the paper's number of missions may (95 % prediction "
-    "interval). "
-    "(luck?): networks spread too widely to tell.";
+    "(luck): it differs, but one network, trained and flown as often as the paper's, may differ as much by "
+    "luck (95 % "
+    "prediction interval from the spread of ours). (luck?): our networks spread too widely to tell.";
 constexpr const char* kNetworksNote =
     "Intervals and p values include the luck of training ({} networks, Student's t). alone: verdicts by the "
     "missions "
-    "of each network alone, {}.";
+    "of each network alone, {} (too few of its missions).";
 constexpr const char* kTurnsNote =
     "Arms took turns among their networks differently: they are paired by scenario only.";
 constexpr const char* kOneNetworkNote =
@@ -167,8 +175,9 @@ constexpr const char* kOneNetworkNote =
 
 std::string Notes(const ClaimStudy& study) {
   const auto wrapped = [](const std::string& text) { return tables::Wrap(text, "", tables::kTerminalWidth); };
-  std::string notes = wrapped(fmt::format(kRules, 100 * kMarginShare, kMarginPoints));
-  if (study.family > 0) notes += wrapped(fmt::format(kOrderNote, study.family));
+  std::string notes = wrapped(VerdictRules());
+  if (study.family > 0) notes += wrapped(kOrderNote) + wrapped(CorrectionNote(study));
+  if (const std::string p85 = P85ClaimNote(study); !p85.empty()) notes += wrapped(p85);
   if (std::any_of(study.claims.begin(), study.claims.end(), [](const JudgedClaim& judged) {
         return judged.luck == Luck::kWithin || judged.luck == Luck::kTooWide;
       }))
@@ -187,6 +196,44 @@ Json ByNetworkJson(const JudgedClaim& judged) {
 }
 
 }  // namespace
+
+std::string VerdictRules() { return fmt::format(kRules, 100 * kMarginShare, kMarginPoints); }
+
+std::string CorrectionNote(const ClaimStudy& study) {
+  return study.family > 0 ? fmt::format(kCorrectionNote, study.family) : "";
+}
+
+std::string LuckNote() { return kLuckNote; }
+
+bool ComparesP85(const JudgedClaim& judged) {
+  const std::string& text = judged.claim.comparison;
+  const std::size_t first = text.find(kP85Ending);
+  return first != std::string::npos && text.find(kP85Ending, first + 1) != std::string::npos;
+}
+
+std::string P85ClaimNote(const ClaimStudy& study) {
+  std::vector<std::pair<std::string, double>> success;
+  bool compared = false;
+  for (const JudgedClaim& judged : study.claims) {
+    if (judged.all.verdict == Verdict::kNotMeasured) continue;
+    compared = compared || ComparesP85(judged);
+    if (judged.claim.kind == "value" && judged.claim.metric == "msr_pct" && judged.repeats.empty() &&
+        paper::IsP85Name(judged.claim.strategy))
+      success.emplace_back(tables::ArmLabel(judged.claim.strategy), judged.all.ours);
+  }
+  return compared && !success.empty() ? tables::P85Note(success) : "";
+}
+
+std::pair<int, int> AgreeingNetworks(const JudgedClaim& judged) {
+  std::pair<int, int> found;
+  if (!judged.asks_networks) return found;
+  for (const Judgement& alone : judged.by_network)
+    found.first += alone.verdict == judged.all.verdict && alone.verdict != Verdict::kNotMeasured,
+        found.second += alone.verdict != Verdict::kNotMeasured;
+  return found;
+}
+
+bool PointsTheOtherWay(const JudgedClaim& judged) { return judged.all.p_against < judged.all.p; }
 
 std::string ClaimInWords(const paper::Claim& claim, int width) {
   std::string metric = Spoken(claim.metric);

@@ -20,6 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kWorldKey = "mission.world";
+constexpr std::string_view kMissionsOf = "missions of ";
 constexpr std::size_t kMostTold = 3;  // values, arms or variants
 
 // One arm as the plan has it, and the paper's arm that it stands for.
@@ -67,6 +68,7 @@ enum class Bearing { kResults, kEffort, kNone };
 Bearing BearingOf(const std::string& key, const FlownArm& arm) {
   // The warm-up's scenarios are set apart from the online ones somewhere, it does not matter where.
   if (key == "mission.first_scenario") return arm.warmup ? Bearing::kNone : Bearing::kEffort;
+  if (key == "mission.physics_hz") return Bearing::kNone;  // the paper has no step of the physics
   if (!key.starts_with("training.")) return Bearing::kResults;
   return arm.paper != nullptr && arm.paper->learns ? Bearing::kEffort : Bearing::kNone;
 }
@@ -130,7 +132,11 @@ void CompareMissions(const sweep::WrittenPlan::Stage& stage, const std::vector<F
   const int paper = named->paper->warmup ? paper::kPaperWarmupMissions : paper::kPaperOnlineMissions;
   if (stage.missions != paper)
     found.effort.push_back(
-        {"missions of " + stage.name, {std::to_string(stage.missions)}, std::to_string(paper), {}});
+        {std::string(kMissionsOf) + stage.name, {std::to_string(stage.missions)}, std::to_string(paper), {}});
+}
+
+std::string YesOrNo(const std::string& value) {
+  return value == "true" ? "yes" : value == "false" ? "no" : value;
 }
 
 std::string Listed(const std::vector<std::string>& all) {
@@ -138,6 +144,23 @@ std::string Listed(const std::vector<std::string>& all) {
   std::string text = fmt::format("{}", fmt::join(all.begin(), all.begin() + static_cast<int>(told), ", "));
   if (all.size() > told) text += fmt::format(" and {} more", all.size() - told);
   return text;
+}
+
+// What a study often departs in; other parameters go by their key.
+constexpr std::pair<std::string_view, std::string_view> kSpokenKeys[] = {
+    {"training.learning_rate", "learning rate"},
+    {"training.epochs", "training epochs"},
+    {"training.seeds", "trained networks of each kind"},
+    {"training.own_warmups", "a warm-up of its own for each network"},
+};
+
+// "10200 missions of warmup", "learning rate 5e-05", "robot.mass_kg 2.4".
+std::string Spoken(const Departure& d) {
+  const std::string values = YesOrNo(Listed(d.values));
+  if (d.key.starts_with(kMissionsOf)) return values + ' ' + d.key;
+  for (const auto& [key, words] : kSpokenKeys)
+    if (d.key == key) return fmt::format("{} {}", words, values);
+  return d.key + ' ' + values;
 }
 
 Json ListJson(const std::vector<Departure>& departures) {
@@ -205,7 +228,7 @@ RunDepartures ReadDepartures(store::ResultReader& reader) {
 std::string DepartureText(const std::vector<Departure>& departures) {
   std::string text;
   for (const Departure& d : departures) {
-    text += fmt::format("{}{} {} for {}", text.empty() ? "" : "; ", d.key, Listed(d.values), d.paper);
+    text += fmt::format("{}{} (paper {})", text.empty() ? "" : "; ", Spoken(d), YesOrNo(d.paper));
     if (!d.arms.empty()) text += " in " + Listed(d.arms);
   }
   return text;
@@ -227,7 +250,7 @@ std::vector<std::string> DepartureSentences(const RunDepartures& departures, con
                                     DepartureText(told->second.aside)));
   if (!told->second.effort.empty())
     sentences.push_back(
-        fmt::format("In other numbers than the paper: {}.", DepartureText(told->second.effort)));
+        fmt::format("Unlike the paper, in numbers alone: {}.", DepartureText(told->second.effort)));
   std::vector<std::string> others;
   for (const auto& [name, of_variant] : departures)
     if (name != variant && !of_variant.PaperFlown()) others.push_back(name);

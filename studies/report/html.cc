@@ -67,8 +67,8 @@ std::string TableCell(const metrics::ArmMetrics& arm, std::size_t metric) {
   const int decimals = metrics::MetricDefinitions()[metric].decimals;
   std::string cell = "<td><b>" + tables::FormatValue(ours.value, decimals) + "</b>";
   if (!std::isnan(ours.lo))
-    cell += "<i>" + tables::FormatValue(ours.lo, decimals) + "–" + tables::FormatValue(ours.hi, decimals) +
-            "</i>";
+    cell += "<i>" + tables::FormatValue(ours.lo, decimals) + (ours.lo < 0 || ours.hi < 0 ? " to " : "–") +
+            tables::FormatValue(ours.hi, decimals) + "</i>";
   if (const tables::PaperCell paper = tables::MakePaperCell(paper::PaperClaims(), arm, metric); paper.value)
     cell += fmt::format("<u{}>{}{}</u>", paper.within ? " class=\"in\"" : "",
                         paper.value->approximate ? "~" : "", HtmlText(paper.value->printed));
@@ -93,7 +93,9 @@ std::string TableHtml(const tables::StudyTable& table) {
       html += TableCell(table.arms[table.arms_down ? r : c], table.metrics[table.arms_down ? c : r]);
     html += "</tr>\n";
   }
-  html += "</table></div>\n<p class=\"files\">";
+  html += "</table></div>\n";
+  if (!table.note.empty()) html += "<p class=\"key\">" + HtmlText(table.note) + "</p>\n";
+  html += "<p class=\"files\">";
   for (const char* ending : {"md", "tex", "csv", "json"})
     html += fmt::format("<a href=\"tables/{0}.{1}\">{0}.{1}</a> ", HtmlText(table.id), ending);
   return html + "</p>\n";

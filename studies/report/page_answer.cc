@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "engine/core/check.h"
 #include "studies/tables/names.h"
+#include "studies/variants/arm_differences.h"
 
 namespace ed3r::report {
 namespace {
@@ -15,10 +18,6 @@ using Arms = std::vector<const metrics::ArmMetrics*>;
 
 double Success(const metrics::ArmMetrics& arm) { return arm["msr_pct"].value; }
 double Energy(const metrics::ArmMetrics& arm) { return arm["total_energy_kj"].value; }
-
-bool Overlap(const metrics::MetricValue& a, const metrics::MetricValue& b) {
-  return !(a.lo > b.hi || b.lo > a.hi);
-}
 
 std::string WithInterval(const metrics::MetricValue& value, int decimals, const char* unit) {
   if (std::isnan(value.lo)) return fmt::format("{:.{}f} {}", value.value, decimals, unit);
@@ -45,23 +44,83 @@ const metrics::ArmMetrics* Extreme(const Arms& arms, double (*value)(const metri
                            });
 }
 
-std::string Than(double ours, double theirs, const char* more, const char* less) {
-  return ours >= theirs ? more : less;
+// The subject minus another arm in one metric, as far as it is known.
+struct Difference {
+  double value = 0, lo = 0, hi = 0;
+  double p = std::numeric_limits<double>::quiet_NaN();  // after Holm's correction; NaN: not tested
+  const char* unit = "";
+  bool one_network = false;
+};
+
+constexpr double kLevel = 0.05;
+
+// "11.4 points more success (4.7 to 18.2; p = 0.074, not significant)".
+std::string Tells(const Difference& d, const char* of) {
+  const bool less = d.value < 0;
+  std::string text = fmt::format("{:.1f} {} {} {}", std::abs(d.value), d.unit, less ? "less" : "more", of);
+  if (std::isnan(d.p)) return text + " (not tested)";
+  return text + fmt::format(" ({:.1f} to {:.1f}; p {}{}, {}{})", less ? -d.hi : d.lo, less ? -d.lo : d.hi,
+                            d.p < 0.001 ? "" : "= ", d.p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", d.p),
+                            d.p < kLevel ? "significant" : "not significant",
+                            d.one_network ? " but for the luck of training" : "");
 }
 
-// "RBS finds ...: ED³R-75 has 15.4 points more success for 68 % less energy."
-std::string Against(const metrics::ArmMetrics& subject, const metrics::ArmMetrics& rival) {
-  std::string text = fmt::format("{} {}: {} has {:.1f} points {} success for {:.0f} % {} energy",
-                                 tables::ArmLabel(rival.name), Tells(rival), tables::ArmLabel(subject.name),
-                                 std::abs(Success(subject) - Success(rival)),
-                                 Than(Success(subject), Success(rival), "more", "less"),
-                                 std::abs(100 * (Energy(subject) / Energy(rival) - 1)),
-                                 Than(Energy(subject), Energy(rival), "more", "less"));
-  const bool success_open = Overlap(subject["msr_pct"], rival["msr_pct"]);
-  const bool energy_open = Overlap(subject["total_energy_kj"], rival["total_energy_kj"]);
-  if (!success_open && !energy_open) return text + ", and neither pair of 95 % intervals overlaps.";
-  if (success_open && energy_open) return text + ", but both pairs of 95 % intervals overlap.";
-  return text + fmt::format(", but the 95 % intervals of {} overlap.", success_open ? "success" : "energy");
+// What a claim of the paper says of the two: for energy the saving in percent.
+std::optional<Difference> Claimed(const claims::ClaimStudy& study, const std::string& subject,
+                                  const std::string& rival, std::string_view metric) {
+  const bool energy = metric == "total_energy_kj";
+  const std::string comparison =
+      fmt::format(fmt::runtime(energy ? "100*(1 - {} / {})" : "{} - {}"), subject, rival);
+  for (const claims::JudgedClaim& judged : study.claims) {
+    const claims::Judgement& all = judged.all;
+    if (judged.claim.comparison != comparison || judged.claim.metric != metric || std::isnan(all.p_holm))
+      continue;
+    Difference d{
+        all.ours,          all.lo, all.hi, std::min(all.p_holm, all.p_against_holm), energy ? "%" : "points",
+        study.networks < 2};
+    if (energy) d.value = -all.ours, d.lo = -all.hi, d.hi = -all.lo;
+    return d;
+  }
+  return std::nullopt;
+}
+
+// Of these comparisons, whichever way round they have the two arms.
+std::optional<Difference> Compared(const std::vector<variants::ArmDifference>& differences,
+                                   const std::string& subject, const std::string& rival,
+                                   std::string_view metric) {
+  for (const variants::ArmDifference& d : differences) {
+    if (d.metric != metric) continue;
+    const char* unit = metric == "total_energy_kj" ? "kJ" : "points";
+    if (d.arm == subject && d.minus == rival)
+      return Difference{d.difference, d.lo, d.hi, d.p_holm, unit, d.OneNetwork()};
+    if (d.arm == rival && d.minus == subject)
+      return Difference{-d.difference, -d.hi, -d.lo, d.p_holm, unit, d.OneNetwork()};
+  }
+  return std::nullopt;
+}
+
+// "RBS finds ...: in the same scenarios ED³R-75 has 11.4 points more success (...) and 69.2 % less energy (...)."
+std::string Against(const Report& report, const std::vector<variants::ArmDifference>& differences,
+                    const metrics::ArmMetrics& subject, const metrics::ArmMetrics& rival) {
+  const std::string theirs = fmt::format("{} {}", tables::ArmLabel(rival.name), Tells(rival));
+  constexpr std::pair<const char*, const char*> kMetrics[] = {{"msr_pct", "success"},
+                                                              {"total_energy_kj", "energy"}};
+  // One correction for both.
+  const bool of_claims = std::all_of(std::begin(kMetrics), std::end(kMetrics), [&](const auto& metric) {
+    return Claimed(report.claims, subject.name, rival.name, metric.first).has_value();
+  });
+  std::vector<std::string> parts;
+  for (const auto& [metric, of] : kMetrics)
+    if (const std::optional<Difference> d = of_claims
+                                                ? Claimed(report.claims, subject.name, rival.name, metric)
+                                                : Compared(differences, subject.name, rival.name, metric))
+      parts.push_back(Tells(*d, of));
+  if (parts.empty())
+    return theirs + "; the two flew no scenarios in common, so nothing is said of their difference.";
+  return fmt::format(
+      "{}: in the same scenarios {} has {} (95 % intervals; p after Holm's correction for all {}).", theirs,
+      tables::ArmLabel(subject.name), fmt::join(parts, " and "),
+      of_claims ? "claims" : "comparisons of arms");
 }
 
 // "A, B and C".
@@ -83,6 +142,33 @@ std::string Preferable(const metrics::ArmMetrics& subject, const Arms& arms) {
                      names.size() == 1 ? "has" : "have", tables::ArmLabel(subject.name));
 }
 
+// "Ablation 2 has the lowest mean energy (8.1 kJ) and the highest mean success (90.5 %) of all arms; ..."
+std::string Best(const metrics::ArmMetrics& subject, const Arms& arms,
+                 const std::vector<variants::ArmDifference>& differences) {
+  const metrics::ArmMetrics *frugal = Extreme(arms, Energy, -1), *successful = Extreme(arms, Success, 1);
+  if (Energy(subject) == Energy(*frugal)) frugal = &subject;
+  if (Success(subject) == Success(*successful)) successful = &subject;
+  const std::string energy = fmt::format("the lowest mean energy ({:.1f} kJ)", Energy(*frugal)),
+                    success = fmt::format("the highest mean success ({:.1f} %)", Success(*successful));
+  std::string text =
+      frugal == successful
+          ? fmt::format("{} has {} and {} of all arms", tables::ArmLabel(frugal->name), energy, success)
+          : fmt::format("Of all arms {} has {} and {} {}", tables::ArmLabel(frugal->name), energy,
+                        tables::ArmLabel(successful->name), success);
+  std::vector<std::string> parts;
+  const auto add = [&](const metrics::ArmMetrics& best, const char* metric, const char* of) {
+    if (&best == &subject) return;
+    if (const std::optional<Difference> d = Compared(differences, best.name, subject.name, metric))
+      parts.push_back(Tells(*d, of));
+  };
+  add(*frugal, "total_energy_kj", "energy");
+  add(*successful, "msr_pct", "success");
+  if (parts.empty()) return text + '.';
+  return text + fmt::format("; beside {} that is {} (p after Holm's correction for all arms beside {}).",
+                            tables::ArmLabel(subject.name), fmt::join(parts, " and "),
+                            tables::ArmLabel(subject.name));
+}
+
 std::string Claims(const claims::ClaimStudy& study) {
   if (!study.HasArms()) return "";
   int judged = 0, hold = 0, differ = 0;
@@ -93,27 +179,50 @@ std::string Claims(const claims::ClaimStudy& study) {
     if (verdict == claims::Verdict::kDiffers) differ += count;
   }
   if (judged == 0) return "";
+  const int built = claims::CountReproducedByConstruction(study);
   return fmt::format(
-      "Of the {} different claims of the paper that this run can judge, {} hold, {} differ and {} stay open.",
-      judged, hold, differ, judged - hold - differ);
+      "Of the {} different claims of the paper that this run can judge, {} hold{}, {} differ and {} stay "
+      "open.",
+      judged, hold, built > 0 ? fmt::format(" ({} of them by construction)", built) : "", differ,
+      judged - hold - differ);
+}
+
+// The random walk; else what the arms of its stage are compared with; else the weakest. Null where it is alone.
+const metrics::ArmMetrics* Rival(const Report& report, const Arms& arms, const metrics::ArmMetrics& subject) {
+  const auto other = [&](const metrics::ArmMetrics* arm) { return arm != nullptr && arm != &subject; };
+  if (const metrics::ArmMetrics* walk = Named(arms, "rbs"); other(walk)) return walk;
+  for (const variants::ArmDifference& d : report.differences)
+    if (d.arm == subject.name)
+      if (const metrics::ArmMetrics* reference = Named(arms, d.minus); other(reference)) return reference;
+  for (const metrics::ArmMetrics* weakest : {Extreme(arms, Success, -1), Extreme(arms, Energy, 1)})
+    if (other(weakest)) return weakest;
+  return nullptr;
 }
 
 }  // namespace
 
-std::vector<std::string> AnswerSentences(const Report& report, const std::vector<bool>& warmups) {
+std::vector<std::string> AnswerSentences(const Report& report, const std::vector<bool>& warmups,
+                                         std::span<const metrics::ArmData> missions) {
   ED3R_CHECK(warmups.size() == report.told.size(), "warm-up or not, of every arm");
+  ED3R_CHECK(missions.size() == report.told.size(), "missions of every arm");
   Arms arms;
+  std::vector<metrics::ArmData> flown;
   for (std::size_t a = 0; a < report.told.size(); ++a)
-    if (!warmups[a] && report.told[a].missions > 0) arms.push_back(&report.told[a]);
+    if (!warmups[a] && report.told[a].missions > 0)
+      arms.push_back(&report.told[a]), flown.push_back(missions[a]);
   if (arms.empty()) return {};
   const metrics::ArmMetrics* subject = Named(arms, "ed3r-75");
   if (subject == nullptr) subject = Extreme(arms, Success, 1);
   std::vector<std::string> sentences = {tables::ArmLabel(subject->name) + ' ' + Tells(*subject) + '.'};
-  const metrics::ArmMetrics* rival = Named(arms, "rbs");
-  if (rival == nullptr || rival == subject) rival = Extreme(arms, Success, -1);
-  if (rival == subject) rival = Extreme(arms, Energy, 1);
-  if (rival != subject) sentences.push_back(Against(*subject, *rival));
-  if (arms.size() > 2) sentences.push_back(Preferable(*subject, arms));
+  const metrics::ArmMetrics* rival = Rival(report, arms, *subject);
+  if (rival == nullptr) return sentences;
+  const std::vector<variants::ArmDifference> beside = variants::CompareArms(flown, subject->name);
+  sentences.push_back(
+      Against(report, report.differences.empty() ? beside : report.differences, *subject, *rival));
+  if (arms.size() > 2) {
+    sentences.push_back(Best(*subject, arms, beside));
+    sentences.push_back(Preferable(*subject, arms));
+  }
   if (const std::string claims = Claims(report.claims); !claims.empty()) sentences.push_back(claims);
   return sentences;
 }

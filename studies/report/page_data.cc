@@ -85,12 +85,10 @@ Json ClaimJson(const claims::JudgedClaim& judged) {
                {"told", claims::NameWithLuck(judged)},
                {"repeats", judged.repeats},
                {"why", all.why}};
-  if (judged.asks_networks && !judged.by_network.empty()) {
-    const auto same =
-        std::count_if(judged.by_network.begin(), judged.by_network.end(),
-                      [&](const claims::Judgement& alone) { return alone.verdict == all.verdict; });
-    json["networks"] = {same, judged.by_network.size()};
-  }
+  if (claims::PointsTheOtherWay(judged)) json["other_way"] = true;
+  if (claims::ComparesP85(judged)) json["p85"] = true;
+  if (const auto [same, measured] = claims::AgreeingNetworks(judged); measured > 0)
+    json["networks"] = {same, measured};
   return json;
 }
 
@@ -103,13 +101,25 @@ Json ClaimsJson(const claims::ClaimStudy& study) {
   for (const auto& [verdict, count] : claims::CountVerdicts(study))
     json["counts"].push_back({NameOf(verdict), count, claims::Holds(verdict)});
   for (const claims::JudgedClaim& judged : study.claims) json["list"].push_back(ClaimJson(judged));
+  json["distinct"] = claims::CountDistinct(study);
+  json["by_construction"] = claims::CountReproducedByConstruction(study);
+  json["rules"] = claims::VerdictRules();
+  json["correction"] = claims::CorrectionNote(study);
+  json["luck"] = claims::LuckNote();
+  json["p85_note"] = claims::P85ClaimNote(study);
   return json;
 }
 
 Json TableJson(const tables::StudyTable& table) {
-  Json json = {{"id", table.id},           {"title", table.title},  {"arms_down", table.arms_down},
-               {"labels", table.labels},   {"arms", Json::array()}, {"missions", Json::array()},
-               {"metrics", table.metrics}, {"cells", Json::array()}};
+  Json json = {{"id", table.id},
+               {"title", table.title},
+               {"note", table.note},
+               {"arms_down", table.arms_down},
+               {"labels", table.labels},
+               {"arms", Json::array()},
+               {"missions", Json::array()},
+               {"metrics", table.metrics},
+               {"cells", Json::array()}};
   for (const metrics::ArmMetrics& arm : table.arms) {
     json["arms"].push_back(arm.name);
     json["missions"].push_back(arm.missions);
@@ -196,9 +206,10 @@ Json MakePageData(const PageDataInputs& inputs) {
   const Report& report = inputs.report;
   std::vector<bool> warmups;
   for (const Json& arm : inputs.figures.at("arms")) warmups.push_back(arm.at("warmup").get<bool>());
-  Json data = {{"format", kFormat},           {"name", report.name},
-               {"question", inputs.question}, {"answer", AnswerSentences(report, warmups)},
-               {"metrics", MetricsJson()},    {"arms", Json::array()}};
+  Json data = {
+      {"format", kFormat},           {"name", report.name},
+      {"question", inputs.question}, {"answer", AnswerSentences(report, warmups, inputs.missions.arms)},
+      {"metrics", MetricsJson()},    {"arms", Json::array()}};
   data["departures"] = report.DepartureNotes();
   for (std::size_t a = 0; a < report.told.size(); ++a) data["arms"].push_back(ArmJson(inputs, a));
   data["slices"] = SlicesJson(inputs.missions.arms, report.told);

@@ -97,7 +97,7 @@ Range RangeOf(std::span<const metrics::ArmData> arms, const Scale& scale) {
 
 const char* CauseOf(const mission::MissionRecord& mission) {
   if (mission.outcome == static_cast<std::int64_t>(mission::Outcome::kFalsePositive))
-    return "false alarm: fire and smoke alone would not have made its last looks reliable";
+    return "false alarm: it was sure of a fire, but what it saw was not the fire";
   return mission.reliable_timesteps == 0 ? "battery empty without one reliable look"
                                          : "battery empty, some reliable looks but never enough in a row";
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "studies/claims/verdict_tables.h"
@@ -17,31 +18,34 @@ std::string ClassOf(claims::Verdict verdict) {
 
 std::string Number(double value) { return std::isnan(value) ? "" : tables::FormatValue(value, 2); }
 
-std::string PValue(double p) {
-  if (std::isnan(p)) return "";
-  return p < 0.001 ? "&lt; 0.001" : fmt::format("{:.3f}", p);
+// The smaller of the two, with '!' where the claim points the other way.
+std::string PValue(const claims::JudgedClaim& judged) {
+  if (std::isnan(judged.all.p_holm)) return "";
+  const double p = std::min(judged.all.p_holm, judged.all.p_against_holm);
+  return (p < 0.001 ? "&lt; 0.001" : fmt::format("{:.3f}", p)) +
+         (claims::PointsTheOtherWay(judged) ? "!" : "");
 }
 
-// "4 of 5" networks alone give the verdict of all missions.
+// "4 of 5": networks that alone give the verdict of all missions.
 std::string Agreement(const claims::JudgedClaim& judged) {
-  if (judged.by_network.empty()) return "";
-  int same = 0;
-  for (const claims::Judgement& alone : judged.by_network) same += alone.verdict == judged.all.verdict;
-  return fmt::format("{} of {}", same, judged.by_network.size());
+  const auto [same, measured] = claims::AgreeingNetworks(judged);
+  return measured == 0 ? "" : fmt::format("{} of {}", same, measured);
 }
 
 std::string Row(const claims::JudgedClaim& judged) {
   constexpr int kWords = 60;
   const claims::Judgement& all = judged.all;
-  const std::string interval = std::isnan(all.lo) ? "" : Number(all.lo) + "–" + Number(all.hi);
+  const std::string interval =
+      std::isnan(all.lo) ? "" : Number(all.lo) + (all.lo < 0 || all.hi < 0 ? " to " : "–") + Number(all.hi);
+  const std::string told = std::string(claims::NameWithLuck(judged)) +
+                           (claims::PointsTheOtherWay(judged) ? ", points the other way" : "");
   return fmt::format(
       "<tr><td title=\"{}\">{}</td><td "
       "class=\"text\">{}<small>{}</small></td><td>{}</td><td>{}<i>{}</i></td><td>{}</td>"
       "<td>{}</td><td class=\"text\"><span class=\"{}\">{}</span></td></tr>\n",
       HtmlText(judged.claim.exact_words), HtmlText(judged.claim.id),
       HtmlText(claims::ClaimInWords(judged.claim, kWords)), HtmlText(all.why), Number(all.paper),
-      Number(all.ours), interval, PValue(all.p_holm), Agreement(judged), ClassOf(all.verdict),
-      claims::NameWithLuck(judged));
+      Number(all.ours), interval, PValue(judged), Agreement(judged), ClassOf(all.verdict), told);
 }
 
 }  // namespace
@@ -52,13 +56,17 @@ std::string VerdictSection(const claims::ClaimStudy& study) {
   for (const auto& [verdict, count] : claims::CountVerdicts(study))
     html += fmt::format("<span class=\"{}\"><b>{}</b> {}</span> ", ClassOf(verdict), count, NameOf(verdict));
   html += fmt::format(
-      "</p>\n<p class=\"key\">Orders and comparisons are paired by scenario ({} of them) and resampled over "
-      "{}; p is corrected "
-      "by Holm over all of them. The column before the verdict: how many of the networks alone would have "
-      "given it. (luck): it differs, but no more than one network on the "
-      "paper's number of missions may; (luck?): networks spread too widely to tell.</p>\n",
-      study.scenarios,
-      study.networks > 1 ? fmt::format("{} trained networks and missions", study.networks) : "missions");
+      "</p>\n<p class=\"key\">{} claims, {} of them different; {} of those that are reproduced hold by "
+      "construction. {}</p>\n<p class=\"key\">Orders and comparisons are paired by scenario ({} of them) and "
+      "resampled over {}; with ! a claim points the other way. {} {}</p>\n<p class=\"key\">Networks: how "
+      "many of "
+      "them, each with its own missions alone, would have given the verdict; empty where one has too few "
+      "missions. {}</p>\n",
+      study.claims.size(), claims::CountDistinct(study), claims::CountReproducedByConstruction(study),
+      HtmlText(claims::VerdictRules()), study.scenarios,
+      study.networks > 1 ? fmt::format("{} trained networks and missions", study.networks) : "missions",
+      HtmlText(claims::CorrectionNote(study)), HtmlText(claims::P85ClaimNote(study)),
+      HtmlText(claims::LuckNote()));
   html +=
       "<details><summary>Every claim that this run can judge</summary>\n<div class=\"wide\"><table "
       "class=\"claims\">\n"

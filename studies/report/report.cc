@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "engine/core/file.h"
@@ -58,6 +59,25 @@ std::vector<metrics::ArmData> Uncompared(const claims::ClaimStudy& claims,
   return uncompared;
 }
 
+// Which missions are in a P85 group is itself chance, and so is what networks they come from: the claims' resampling forms
+// the groups anew each time, the tables' formulas know only the group at hand.
+void TakeP85Intervals(const claims::ClaimStudy& claims, std::vector<metrics::ArmMetrics>& p85) {
+  for (metrics::ArmMetrics& group : p85)
+    for (const claims::JudgedClaim& judged : claims.claims) {
+      if (judged.claim.strategy != group.name || judged.claim.kind != "value" || std::isnan(judged.all.lo))
+        continue;
+      const auto metric =
+          std::find_if(metrics::MetricDefinitions().begin(), metrics::MetricDefinitions().end(),
+                       [&](const metrics::MetricDefinition& m) { return m.name == judged.claim.metric; });
+      if (metric == metrics::MetricDefinitions().end()) continue;
+      metrics::MetricValue& value =
+          group.values[static_cast<std::size_t>(metric - metrics::MetricDefinitions().begin())];
+      // Of a stage of the same names that the claims do not speak of, it is another group.
+      if (std::abs(value.value - judged.all.ours) > 1e-6 * std::abs(value.value)) continue;
+      value.lo = judged.all.lo, value.hi = judged.all.hi;
+    }
+}
+
 }  // namespace
 
 std::string Report::Variant() const { return variants.variants.empty() ? "" : variants.variants.front(); }
@@ -91,7 +111,14 @@ Report MakeReport(const RunResults& results, const RunDepartures& departures, Ju
   report.differences = variants::CompareArms(Uncompared(report.claims, arms));
   report.convergence = claims::Convergence(arms);
   report.look_forward = tables::LookForwardOf(arms);
+  TakeP85Intervals(report.claims, p85);
   report.tables = tables::MakeStudyTables(report.told, p85);
+  if (!report.claims.HasArms())
+    for (tables::StudyTable& table : report.tables)
+      if (!table.note.empty())
+        table.note +=
+            " Intervals of P85 are too narrow: over the missions of the group at hand, not over which fall "
+            "into it.";
   return report;
 }
 

@@ -1,5 +1,7 @@
 #include "studies/tables/study_table.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "studies/metrics/arm.h"
@@ -87,7 +89,7 @@ Arms FindTogether(std::span<const metrics::ArmMetrics> arms, std::span<const std
 
 StudyTable MakeTable(const Description& description, const Arms& arms,
                      std::span<const metrics::ArmMetrics> p85) {
-  StudyTable table{description.id, description.title, description.arms_down, {}, {}, {}};
+  StudyTable table{description.id, description.title, {}, description.arms_down, {}, {}, {}};
   for (const metrics::ArmMetrics* arm : arms) table.arms.push_back(*arm);
   if (description.p85)
     for (const metrics::ArmMetrics* arm : arms)
@@ -96,6 +98,11 @@ StudyTable MakeTable(const Description& description, const Arms& arms,
   for (const metrics::ArmMetrics& arm : table.arms) table.labels.push_back(ArmLabel(arm.name));
   for (const std::string_view metric : description.metrics)
     table.metrics.push_back(metrics::MetricIndex(metric));
+  std::vector<std::pair<std::string, double>> groups;
+  for (std::size_t a = 0; a < table.arms.size(); ++a)
+    if (paper::IsP85Name(table.arms[a].name))
+      groups.emplace_back(table.labels[a], table.arms[a]["msr_pct"].value);
+  if (!groups.empty()) table.note = P85Note(groups);
   return table;
 }
 
@@ -103,7 +110,7 @@ StudyTable MakeTable(const Description& description, const Arms& arms,
 
 std::vector<StudyTable> MakeStudyTables(std::span<const metrics::ArmMetrics> arms,
                                         std::span<const metrics::ArmMetrics> p85) {
-  StudyTable all{"arms", "Every arm", true, {}, {}, {}};
+  StudyTable all{"arms", "Every arm", {}, true, {}, {}, {}};
   const std::vector<std::string> names = UniqueArmNames(arms);
   for (std::size_t a = 0; a < arms.size(); ++a) {
     if (arms[a].missions == 0) continue;
@@ -117,6 +124,16 @@ std::vector<StudyTable> MakeStudyTables(std::span<const metrics::ArmMetrics> arm
     if (const Arms found = FindTogether(arms, paper::ArmsOfComparison(description.id)); !found.empty())
       tables.push_back(MakeTable(description, found, p85));
   return tables;
+}
+
+std::string P85Note(std::span<const std::pair<std::string, double>> success) {
+  std::vector<std::string> parts;
+  for (const auto& [label, percent] : success) parts.push_back(fmt::format("{} {:.1f} %", label, percent));
+  return fmt::format(
+      "P85 is the longest {} % of each arm's own missions: arms are compared on different missions, chosen "
+      "by "
+      "their own result; the share of these that finds the fire: {}.",
+      metrics::kP85Percent, fmt::join(parts, ", "));
 }
 
 std::string MetricHeading(std::size_t metric) {

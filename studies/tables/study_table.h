@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "studies/metrics/metrics.h"
@@ -16,6 +17,7 @@ namespace ed3r::tables {
 struct StudyTable {
   std::string id;                         // "baselines": file name, LaTeX label
   std::string title;                      // caption
+  std::string note;                       // what its reader must know; mostly empty
   bool arms_down = true;                  // else metrics down, arms across
   std::vector<metrics::ArmMetrics> arms;  // P85 groups are arms of their own
   std::vector<std::string> labels;        // one per arm
@@ -29,6 +31,9 @@ struct StudyTable {
 std::vector<StudyTable> MakeStudyTables(std::span<const metrics::ArmMetrics> arms,
                                         std::span<const metrics::ArmMetrics> p85);
 
+// What P85 groups are, of the arm labels and success rates (percent) given: "The longest 15 % of each arm's own missions, ...".
+std::string P85Note(std::span<const std::pair<std::string, double>> success);
+
 // "21.93 (19.85–23.95) [21.44]": ours, its 95 % interval, the paper's value; GitHub's pipe tables.
 std::string MarkdownTable(const StudyTable& table, const std::vector<paper::Claim>& claims);
 
@@ -38,7 +43,7 @@ std::string LatexTable(const StudyTable& table, const std::vector<paper::Claim>&
 // Columns stage,arm,missions,metric,unit,value,lo,hi,n,paper; full precision, none empty.
 std::string CsvTable(const StudyTable& table, const std::vector<paper::Claim>& claims);
 
-// {"id", "title", "arms": [{"stage", "arm", "label", "missions", METRIC: {"mean", "lo", "hi", "n", "paper"}, ...}]}.
+// {"id", "title", "note", "arms": [{"stage", "arm", "label", "missions", METRIC: {"mean", "lo", "hi", "n", "paper"}, ...}]}.
 nlohmann::ordered_json JsonTable(const StudyTable& table, const std::vector<paper::Claim>& claims);
 
 // Plain text as LaTeX prints it, the signs of the tables included (³ η ≥ –).

@@ -104,9 +104,9 @@ std::string MarkdownText(std::string_view utf8) {
 
 std::string MarkdownTable(const StudyTable& table, const std::vector<paper::Claim>& claims) {
   const Grid grid = MakeGrid(table, claims);
-  std::string text =
-      fmt::format("**{}.** 95 % intervals in parentheses, the paper's values in brackets.\n\n| {} |",
-                  MarkdownText(table.title), grid.corner);
+  std::string text = fmt::format(
+      "**{}.** 95 % intervals in parentheses, the paper's values in brackets.{}\n\n| {} |",
+      MarkdownText(table.title), MarkdownText(table.note.empty() ? "" : ' ' + table.note), grid.corner);
   for (const std::string& column : grid.columns) text += ' ' + MarkdownText(column) + " |";
   text += "\n|---|";
   for (std::size_t c = 0; c < grid.columns.size(); ++c) text += "---|";
@@ -126,9 +126,10 @@ std::string LatexTable(const StudyTable& table, const std::vector<paper::Claim>&
   const Grid grid = MakeGrid(table, claims);
   std::string text = fmt::format(
       "% needs \\usepackage{{booktabs}}\n\\begin{{table}}\n  \\centering\n  \\footnotesize\n"
-      "  \\caption{{{}. Small: 95\\,\\% intervals; italic: the paper's values.}}\n  \\label{{tab:{}}}\n"
+      "  \\caption{{{}. Small: 95\\,\\% intervals; italic: the paper's values.{}}}\n  \\label{{tab:{}}}\n"
       "  \\begin{{tabular}}{{l{}}}\n    \\toprule\n    {}",
-      LatexText(table.title), table.id, std::string(grid.columns.size(), 'r'), grid.corner);
+      LatexText(table.title), LatexText(table.note.empty() ? "" : ' ' + table.note), table.id,
+      std::string(grid.columns.size(), 'r'), grid.corner);
   for (const std::string& column : grid.columns) text += " & " + LatexText(column);
   text += " \\\\\n    \\midrule\n";
   for (std::size_t r = 0; r < grid.rows.size(); ++r) {
@@ -163,8 +164,10 @@ std::string CsvTable(const StudyTable& table, const std::vector<paper::Claim>& c
 }
 
 nlohmann::ordered_json JsonTable(const StudyTable& table, const std::vector<paper::Claim>& claims) {
-  nlohmann::ordered_json json = {
-      {"id", table.id}, {"title", table.title}, {"arms", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json = {{"id", table.id},
+                                 {"title", table.title},
+                                 {"note", table.note},
+                                 {"arms", nlohmann::ordered_json::array()}};
   for (std::size_t a = 0; a < table.arms.size(); ++a) {
     const metrics::ArmMetrics& arm = table.arms[a];
     nlohmann::ordered_json entry = {

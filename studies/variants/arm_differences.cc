@@ -14,17 +14,18 @@
 namespace ed3r::variants {
 namespace {
 
-constexpr char kReferenceArm[] = "rbs";
+constexpr std::string_view kReferenceArm = "rbs";
 constexpr std::size_t kMetrics = std::size(kComparedMetrics);
 constexpr int kArmWidth = 20, kPairsWidth = 7, kCellWidth = 31;
 
 // What the other arms of its stage are compared with; null where none has flown.
-const metrics::ArmData* ReferenceOf(std::span<const metrics::ArmData> arms, const std::string& stage) {
+const metrics::ArmData* ReferenceOf(std::span<const metrics::ArmData> arms, const std::string& stage,
+                                    std::string_view wanted) {
   const metrics::ArmData* reference = nullptr;
   for (const metrics::ArmData& arm : arms) {
     if (arm.stage != stage || arm.missions.empty()) continue;
-    if (arm.name == kReferenceArm) return &arm;
-    if (reference == nullptr) reference = &arm;
+    if (arm.name == (wanted.empty() ? kReferenceArm : wanted)) return &arm;
+    if (reference == nullptr && wanted.empty()) reference = &arm;
   }
   return reference;
 }
@@ -62,10 +63,11 @@ std::string StageTable(std::span<const ArmDifference> differences, std::size_t& 
 
 }  // namespace
 
-std::vector<ArmDifference> CompareArms(std::span<const metrics::ArmData> arms) {
+std::vector<ArmDifference> CompareArms(std::span<const metrics::ArmData> arms,
+                                       std::string_view reference_name) {
   std::vector<ArmDifference> differences;
   for (const metrics::ArmData& arm : arms) {
-    const metrics::ArmData* reference = ReferenceOf(arms, arm.stage);
+    const metrics::ArmData* reference = ReferenceOf(arms, arm.stage, reference_name);
     if (reference == nullptr || &arm == reference || !SameScenarios(*reference, arm)) continue;
     for (const char* metric : kComparedMetrics) {
       const PairedDifference difference = DifferenceOf(*reference, arm, metric);

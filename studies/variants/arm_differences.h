@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "studies/metrics/arm.h"
@@ -20,10 +21,12 @@ struct ArmDifference : PairedDifference {
   bool Certain() const { return p_holm < 0.05 && !OneNetwork(); }
 };
 
-// Every other arm of a stage minus `rbs`, or, where the stage has none that flew, minus its first one: all of
+// Every other arm of a stage minus the one called `reference`; where none is given minus `rbs`, or, where the stage has none
+// that flew, minus its first one: all of
 // kComparedMetrics, by stage and arm in the order given. Left out are arms without a scenario in common and those whose
 // scenarios are others (SameScenarios).
-std::vector<ArmDifference> CompareArms(std::span<const metrics::ArmData> arms);
+std::vector<ArmDifference> CompareArms(std::span<const metrics::ArmData> arms,
+                                       std::string_view reference = {});
 
 // A table of each stage, in lines of at most kTerminalWidth characters; "" without differences.
 std::string ArmDifferenceText(std::span<const ArmDifference> differences);

@@ -51,9 +51,9 @@ TEST_F(CompareTest, DifferencesArePairedAndWritten) {
 TEST_F(CompareTest, ThePaperIsJudgedOnlyWhereEveryRunFlewIt) {
   const std::string both = fmt::format("compare {} {}", Dir("usual"), Dir("small"));
   const CommandResult left_out = Ed3r(both), asked = Ed3r(both + " --claims");
-  EXPECT_TRUE(
-      left_out.out.starts_with("small: not as in the paper: robot.battery_mah 1000 for 3500.\nSo the paper's "
-                               "claims are not judged; --claims judges them all the same.\n\n"))
+  EXPECT_TRUE(left_out.out.starts_with(
+      "small: not as in the paper: robot.battery_mah 1000 (paper 3500).\nSo the paper's "
+      "claims are not judged; --claims judges them all the same.\n\n"))
       << left_out.out.substr(0, 300);
   EXPECT_EQ(left_out.out.find("Claims of the paper"), std::string::npos);
   EXPECT_NE(asked.out.find("Claims of the paper"), std::string::npos);

@@ -233,7 +233,7 @@ TEST_F(ReportTest, ThePaperIsJudgedOnlyWhereItWasFlown) {
   const Judged paper = JudgedWith(out_, "");
   EXPECT_TRUE(paper.json.at("paper").at("paper_flown"));
   EXPECT_FALSE(paper.json.at("claims").empty());
-  EXPECT_NE(paper.text.find("In other numbers than the paper: missions of online 3 for 850."),
+  EXPECT_NE(paper.text.find("Unlike the paper, in numbers alone: 3 missions of online (paper 850)."),
             std::string::npos);
   EXPECT_NE(paper.page.find("id=\"verdicts\""), std::string::npos);
 
@@ -241,8 +241,9 @@ TEST_F(ReportTest, ThePaperIsJudgedOnlyWhereItWasFlown) {
   EXPECT_FALSE(heavy.json.at("paper").at("claims_judged"));
   EXPECT_TRUE(heavy.json.at("claims").empty());
   for (const std::string& text : {heavy.text, heavy.page})
-    EXPECT_NE(text.find("Not as in the paper: robot.mass_kg 2.4 for 1.816. So its claims are not judged;"),
-              std::string::npos)
+    EXPECT_NE(
+        text.find("Not as in the paper: robot.mass_kg 2.4 (paper 1.816). So its claims are not judged;"),
+        std::string::npos)
         << text.substr(0, 500);
   EXPECT_EQ(heavy.page.find("id=\"verdicts\""), std::string::npos);
   EXPECT_FALSE(JudgedWith(out_, "--set robot.mass_kg=2.4", "--claims").json.at("claims").empty());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "studies/tables/layout.h"
@@ -46,6 +47,36 @@ TEST(VerdictTextTest, SaysWhatIsClaimedAndWhatCameOut) {
   EXPECT_NE(text.find("include the luck of training (5 networks"), std::string::npos);
 }
 
+const JudgedClaim& Claim(const ClaimStudy& study, std::string_view id) {
+  return *std::find_if(study.claims.begin(), study.claims.end(),
+                       [&](const JudgedClaim& judged) { return judged.claim.id == id; });
+}
+
+TEST(VerdictNotesTest, TellWhatNumbersOfTheStudyMean) {
+  EXPECT_NE(VerdictRules().find("within 10 % of a size or 5 points"), std::string::npos) << VerdictRules();
+  EXPECT_NE(CorrectionNote(Study()).find(fmt::format("for all {} different", Study().family)),
+            std::string::npos);
+  EXPECT_EQ(CorrectionNote({}), "");
+  EXPECT_TRUE(ComparesP85(Claim(Study(), "C002")));
+  EXPECT_FALSE(ComparesP85(Claim(Study(), "C122"))) << "of one group";
+  const std::string note = P85ClaimNote(Study());
+  EXPECT_NE(note.find(fmt::format("ED³R-75, P85 {:.1f} %, ECD²R, P85 {:.1f} %, RBS, P85 {:.1f} %",
+                                  Claim(Study(), "C124").all.ours, Claim(Study(), "C130").all.ours,
+                                  Claim(Study(), "C136").all.ours)),
+            std::string::npos)
+      << note;
+  EXPECT_EQ(P85ClaimNote({}), "");
+}
+
+TEST(VerdictNotesTest, NetworksThatHaveTooFewMissionsAreNotCounted) {
+  const auto [same, measured] = AgreeingNetworks(Claim(Study(), "C140"));
+  EXPECT_EQ(measured, 5);
+  EXPECT_GT(same, 0);
+  EXPECT_EQ(AgreeingNetworks(Claim(Study(), "C145")), (std::pair<int, int>{}))
+      << "P85 of one network's missions";
+  EXPECT_EQ(AgreeingNetworks(Claim(Study(), "C116")), (std::pair<int, int>{})) << "RBS asks no network";
+}
+
 TEST(VerdictTextTest, AnOppositeThatIsSignificantShowsItsOwnP) {
   const ClaimStudy study =
       JudgeClaims(paper::PaperClaims(),
@@ -55,6 +86,9 @@ TEST(VerdictTextTest, AnOppositeThatIsSignificantShowsItsOwnP) {
   EXPECT_NE(line.find("! "), std::string::npos) << line;
   EXPECT_NE(line.find("differs"), std::string::npos) << line;
   EXPECT_EQ(line.find("1.000"), std::string::npos) << line;
+  EXPECT_TRUE(PointsTheOtherWay(Claim(study, "C140")));
+  EXPECT_FALSE(PointsTheOtherWay(Claim(Study(), "C140")));
+  EXPECT_FALSE(PointsTheOtherWay(Claim(study, "C104"))) << "a number has no way";
   const auto json = VerdictJson(study)[139];
   EXPECT_LT(json.at("p_against_holm"), 0.05);
   EXPECT_GT(json.at("p_holm"), 0.5);

@@ -47,15 +47,20 @@ TEST(DeparturesTest, SweepsOfThePaperFlyThePaper) {
   }
   EXPECT_TRUE(Of(PlanOfSweep("paper")).effort.empty());
   EXPECT_EQ(report::DepartureText(Of(PlanOfSweep("smoke")).effort),
-            "missions of warmup 60 for 2040; missions of online 56 for 850; training.learning_rate 0.0001 "
-            "for 5e-06; "
-            "training.epochs 40 for 2000");
+            "60 missions of warmup (paper 2040); 56 missions of online (paper 850); learning rate 0.0001 "
+            "(paper 5e-06); training epochs 40 (paper 2000)");
+}
+
+TEST(DeparturesTest, ThePaperHasNoStepOfThePhysics) {
+  const report::Departures found = Of(With(PlanOfSweep("paper"), "arm=ed3r-75", "mission.physics_hz", "240"));
+  EXPECT_TRUE(found.PaperFlown());
+  EXPECT_TRUE(found.effort.empty());
 }
 
 TEST(DeparturesTest, EveryParameterThatIsNotEffortDoes) {
   const std::string paper = PlanOfSweep("paper");
   for (const ParameterInfo& parameter : Parameters()) {
-    if (parameter.scope != Scope::kMission) continue;
+    if (parameter.scope != Scope::kMission || parameter.key == "mission.physics_hz") continue;
     const report::Departures found = Of(With(paper, "arm=ed3r-75", parameter.key, "another"));
     const bool effort = parameter.key.starts_with("training.") || parameter.key == "mission.first_scenario";
     const std::vector<report::Departure>& list = effort ? found.effort : found.results;
@@ -70,13 +75,13 @@ TEST(DeparturesTest, EveryParameterThatIsNotEffortDoes) {
 TEST(DeparturesTest, TheNameOfAnArmPromisesItsStrategyThresholdAndSites) {
   const std::string paper = PlanOfSweep("paper");
   EXPECT_EQ(report::DepartureText(Of(With(paper, "arm=ed3r-85", "agents.eta_min", "0.75")).results),
-            "agents.eta_min 0.75 for 0.85 in ed3r-85");
+            "agents.eta_min 0.75 (paper 0.85) in ed3r-85");
   EXPECT_EQ(report::DepartureText(Of(With(paper, "arm=rbs", "mission.strategy", "look-level")).results),
-            "mission.strategy look-level for rbs in rbs");
+            "mission.strategy look-level (paper rbs) in rbs");
   EXPECT_EQ(report::DepartureText(Of(With(paper, "arm=rbs", "mission.sites", "known")).results),
-            "mission.sites known for all in rbs");
+            "mission.sites known (paper all) in rbs");
   EXPECT_EQ(report::DepartureText(Of(With(paper, "arm=warmup", "mission.sites", "all")).results),
-            "mission.sites all for known in warmup");
+            "mission.sites all (paper known) in warmup");
 }
 
 TEST(DeparturesTest, AnArmOfOnesOwnKeepsNothingFromBeingJudged) {
@@ -84,21 +89,22 @@ TEST(DeparturesTest, AnArmOfOnesOwnKeepsNothingFromBeingJudged) {
   plan = With(plan, "arm=look-level", "robot.mass_kg", "2.4");
   const report::Departures found = Of(plan);
   EXPECT_TRUE(found.PaperFlown());
-  EXPECT_EQ(report::DepartureText(found.aside), "robot.mass_kg 2.4 for 1.816");
+  EXPECT_EQ(report::DepartureText(found.aside), "robot.mass_kg 2.4 (paper 1.816)");
 }
 
 TEST(DeparturesTest, AWarmUpOfAnotherNameIsWhatNetworksLearnFrom) {
   std::string plan = With(PlanOfSweep("paper"), "arm=warmup", "robot.mass_kg", "2.4");
   plan.replace(plan.find("arm=warmup\n"), 10, "arm=mine");
-  EXPECT_EQ(report::DepartureText(Of(plan).results), "robot.mass_kg 2.4 for 1.816 in mine");
+  EXPECT_EQ(report::DepartureText(Of(plan).results), "robot.mass_kg 2.4 (paper 1.816) in mine");
 }
 
 TEST(DeparturesTest, AWorldIsWhatIsInItsFiles) {
   const std::string paper = PlanOfSweep("rbs");
   EXPECT_EQ(report::DepartureText(report::DeparturesOf(paper, "", {}).results),
-            "mission.world worlds/paper.yaml of other content for worlds/paper.yaml");
+            "mission.world worlds/paper.yaml of other content (paper worlds/paper.yaml)");
   const std::string elsewhere = With(paper, "arm=rbs", "mission.world", "../copy.yaml");
-  EXPECT_EQ(report::DepartureText(Of(elsewhere).results), "mission.world ../copy.yaml for worlds/paper.yaml");
+  EXPECT_EQ(report::DepartureText(Of(elsewhere).results),
+            "mission.world ../copy.yaml (paper worlds/paper.yaml)");
   EXPECT_TRUE(report::DeparturesOf(elsewhere, "", {"../copy.yaml"}).PaperFlown());
 }
 
@@ -122,9 +128,9 @@ TEST(DeparturesTest, EachVariantIsComparedByItself) {
   const std::string plan = PlanOfSweep("sensitivity");
   EXPECT_TRUE(Of(plan, "base").PaperFlown());
   EXPECT_TRUE(Of(plan, "other-networks").PaperFlown());
-  EXPECT_EQ(report::DepartureText(Of(plan, "R8-battery-4S").results), "robot.battery_v 14.8 for 11.1");
+  EXPECT_EQ(report::DepartureText(Of(plan, "R8-battery-4S").results), "robot.battery_v 14.8 (paper 11.1)");
   EXPECT_EQ(report::DepartureText(Of(PlanOfSweep("tiers"), "pixels").results),
-            "perception.tier pixels for profile");
+            "perception.tier pixels (paper profile)");
   EXPECT_FALSE(Of(PlanOfSweep("matched"), "m01").PaperFlown());
   EXPECT_TRUE(Of(PlanOfSweep("matched"), "paper").PaperFlown());
 }
@@ -144,7 +150,7 @@ TEST(DeparturesTest, AReportThatDepartsHasNoVerdictsUnlessTheyAreAskedFor) {
 
   EXPECT_FALSE(left_out.claims.HasArms());
   EXPECT_NE(report::ReportText(left_out).find(
-                "\nNot as in the paper: robot.mass_kg 2.4 for 1.816. So its claims are not "
+                "\nNot as in the paper: robot.mass_kg 2.4 (paper 1.816). So its claims are not "
                 "judged; 'ed3r report DIR"),
             std::string::npos)
       << report::ReportText(left_out).substr(0, 400);

@@ -111,20 +111,60 @@ TEST(PageSlicesTest, TheDataStaySmallForManyMissions) {
 }
 
 std::vector<std::string> Answer(std::vector<metrics::ArmData> arms, std::vector<bool> warmups) {
-  return report::AnswerSentences(report::MakeReport({.name = "x", .arms = std::move(arms)}, {}), warmups);
+  return report::AnswerSentences(report::MakeReport({.name = "x", .arms = arms}, {}), warmups, arms);
+}
+
+// Twelve missions in scenarios of their own, each `energy_kj` and up to 1.1 kJ more; the first `found` succeed.
+metrics::ArmData TwelveMissions(const char* name, double energy_kj, int found) {
+  metrics::ArmData arm{.stage = "online", .name = name, .missions = {}};
+  for (int i = 0; i < 12; ++i) {
+    mission::MissionRecord& m = arm.missions.emplace_back(
+        FlownMission(i < found ? mission::Outcome::kSuccess : mission::Outcome::kFalsePositive, 0, 4, 0, 60));
+    m.scenario = i;
+    SpendEnergy(m, 1000 * energy_kj + 100 * (i % 5) * (i % 3), 0, 0, 0);
+  }
+  return arm;
 }
 
 TEST(PageAnswerTest, TellsTheStudiedArmBesideItsRival) {
-  metrics::ArmData rbs = FiveMissions();
-  rbs.name = "rbs";
-  rbs.missions[0].outcome = static_cast<std::int64_t>(mission::Outcome::kFalsePositive);
-  const auto sentences = Answer({FiveMissions(), rbs}, {false, false});
+  const auto sentences =
+      Answer({TwelveMissions("mine", 10, 9), TwelveMissions("rbs", 20, 8)}, {false, false});
   ASSERT_GE(sentences.size(), 2u);
-  EXPECT_TRUE(sentences[0].starts_with("ED³R-75 finds the fire in 60.0 % ("));
-  EXPECT_TRUE(sentences[1].starts_with("RBS finds the fire in 40.0 % ("));
-  EXPECT_NE(sentences[1].find("ED³R-75 has 20.0 points more success for 0 % more energy"), std::string::npos)
+  EXPECT_TRUE(sentences[0].starts_with("mine finds the fire in 75.0 % (")) << sentences[0];
+  EXPECT_TRUE(sentences[1].starts_with("RBS finds the fire in 66.7 % (")) << sentences[1];
+  EXPECT_NE(sentences[1].find("in the same scenarios mine has 8.3 points more success ("), std::string::npos)
       << sentences[1];
-  EXPECT_NE(sentences[1].find("both pairs of 95 % intervals overlap"), std::string::npos) << sentences[1];
+  EXPECT_NE(
+      sentences[1].find(", not significant) and 10.0 kJ less energy (10.0 to 10.0; p < 0.001, significant)"),
+      std::string::npos)
+      << sentences[1];
+  EXPECT_NE(sentences[1].find("correction for all comparisons of arms"), std::string::npos) << sentences[1];
+}
+
+TEST(PageAnswerTest, NamesTheArmOfTheBestMeans) {
+  const std::vector<metrics::ArmData> arms = {TwelveMissions("ed3r-75", 10, 9), TwelveMissions("mine", 5, 10),
+                                              TwelveMissions("rbs", 20, 8)};
+  const std::string best = Answer(arms, {false, false, false}).at(2);
+  EXPECT_TRUE(
+      best.starts_with("mine has the lowest mean energy (5.2 kJ) and the highest mean success (83.3 %)"))
+      << best;
+  EXPECT_NE(
+      best.find("; beside ED³R-75 that is 5.0 kJ less energy (5.0 to 5.0; p < 0.001, significant) and 8.3 "
+                "points more success ("),
+      std::string::npos)
+      << best;
+  const std::string own =
+      Answer({arms[0], TwelveMissions("other", 12, 7), arms[2]}, {false, false, false}).at(2);
+  EXPECT_TRUE(own.starts_with("ED³R-75 has the lowest mean energy")) << own;
+  EXPECT_TRUE(own.ends_with(" of all arms.")) << own;
+}
+
+TEST(PageAnswerTest, SaysNothingOfArmsInOtherScenarios) {
+  metrics::ArmData rbs = TwelveMissions("rbs", 20, 8);
+  for (mission::MissionRecord& m : rbs.missions) m.scenario += 100;
+  const auto sentences = Answer({TwelveMissions("mine", 10, 9), rbs}, {false, false});
+  EXPECT_TRUE(sentences.at(1).ends_with("no scenarios in common, so nothing is said of their difference."))
+      << sentences.at(1);
 }
 
 TEST(PageAnswerTest, WarmUpsAreNoAnswer) {

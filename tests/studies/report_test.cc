@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "engine/core/check.h"
+#include "tests/claims/synthetic_run.h"
 #include "tests/studies/five_missions.h"
 
 namespace ed3r {
@@ -49,6 +50,25 @@ TEST(ReportTest, JsonHasArmsAndGeneralisation) {
   EXPECT_EQ(json.at("name"), "paper");
   EXPECT_EQ(json.at("arms").at("ed3r-75").at("msr_pct").at("mean"), 60);
   EXPECT_EQ(json.at("generalisation").at("ed3r-75").at("known-site").at("missions"), 2);
+}
+
+TEST(ReportTest, P85TablesHaveTheIntervalsOfTheClaims) {
+  const std::vector<metrics::ArmData> arms = {claims::MakeArm({"ed3r-75", 20, 0.02, 0.3}),
+                                              claims::MakeArm({"rbs", 35, 0.2, 0, false})};
+  const report::Report report = report::MakeReport({.name = "x", .arms = arms}, {});
+  int compared = 0;
+  for (const tables::StudyTable& table : report.tables)
+    for (const metrics::ArmMetrics& arm : table.arms)
+      for (const claims::JudgedClaim& judged : report.claims.claims) {
+        if (judged.claim.strategy != arm.name || judged.claim.id != "C122") continue;
+        ++compared;
+        const metrics::MetricValue value = arm["total_energy_kj"];
+        EXPECT_EQ(value.lo, judged.all.lo);
+        EXPECT_EQ(value.hi, judged.all.hi);
+        EXPECT_LT(value.lo, metrics::ComputeP85(arms[0])["total_energy_kj"].lo)
+            << "the luck of training is in it";
+      }
+  EXPECT_EQ(compared, 1);
 }
 
 TEST(ReportTest, IsTheSameEveryTime) {

@@ -31,6 +31,7 @@ std::vector<std::string> ArmNames(const tables::StudyTable& table) {
 tables::StudyTable OneCell() {
   return {.id = "one",
           .title = "A & B",
+          .note = {},
           .arms = {Metrics("ed3r-75")},
           .labels = {"ED³R-75"},
           .metrics = {metrics::MetricIndex("msr_pct"), metrics::MetricIndex("duration_max_min")}};
@@ -49,6 +50,8 @@ TEST(StudyTableTest, ARunOfThePaperHasItsTables) {
             (std::vector<std::string>{"ed3r-65", "ed3r-75", "ed3r-85"}));
   EXPECT_EQ(ArmNames(*Find(tables, "baselines")),
             (std::vector<std::string>{"ed3r-75", "ecd2r", "rbs", "ed3r-p85", "rbs-p85"}));
+  for (const tables::StudyTable& table : tables)
+    EXPECT_EQ(table.note.empty(), table.id != "baselines") << table.id;
   EXPECT_EQ(Find(tables, "ablations"), nullptr);  // ED3R alone compares with nothing
 }
 

@@ -54,7 +54,7 @@ test("its head names what was not as in the paper", async () => {
   const notes = await page.$$eval("#headline .note", (list) => list.map((note) => note.textContent));
   assert.equal(report.paper.claims_judged, true);
   assert.equal(notes.length, 1);
-  assert.match(notes[0], /^In other numbers than the paper: missions of warmup 12 for 2040; /);
+  assert.match(notes[0], /^Unlike the paper, in numbers alone: 12 missions of warmup \(paper 2040\); /);
   await page.close();
 });
 
@@ -76,7 +76,10 @@ test("its numbers are those of report.json", async () => {
   }
   const verdicts = new Map(report.claims.map((claim) => [claim.id, claim.verdict]));
   const rows = await page.$$eval("#claims tbody tr", (list) =>
-    list.map((row) => [row.children[0].textContent, row.lastElementChild.textContent]),
+    list.map((row) => [
+      row.children[0].textContent,
+      row.lastElementChild.querySelector(".verdict").textContent,
+    ]),
   );
   assert.equal(rows.length, report.claims.filter((claim) => claim.verdict !== "not measured").length);
   for (const [id, verdict] of rows) assert.equal(verdict.replace(/ \(luck\??\)$/, ""), verdicts.get(id), id);
@@ -147,6 +150,30 @@ test("claims filter by verdict", async () => {
     rows.map((row) => row.lastElementChild.textContent),
   );
   assert.ok(shown.length > 0 && shown.every((verdict) => verdict.startsWith(wanted)), shown.join());
+  await page.close();
+});
+
+test("claims are found by their text, those of the abstract first", async () => {
+  const page = await open();
+  const rows = () =>
+    page.$$eval("#claims tbody tr", (list) =>
+      list.map((row) => [row.children[0].textContent, row.textContent]),
+    );
+  const all = await rows();
+  const abstract = report.claims.filter(
+    (claim) => claim.where === "Abstract" && claim.verdict !== "not measured",
+  );
+  assert.deepEqual(
+    all.slice(0, abstract.length).map(([id]) => id),
+    abstract.map((claim) => claim.id),
+  );
+  await page.fill("#claims input[type=search]", "WER baselines");
+  const found = await rows();
+  assert.ok(found.length < all.length, `${found.length} of ${all.length}`);
+  await page.fill("#claims input[type=search]", all.at(-1)[0]);
+  assert.ok((await rows()).some(([id]) => id === all.at(-1)[0]));
+  assert.match(page.url(), new RegExp(`find=${all.at(-1)[0]}`));
+  assert.deepEqual(page.faults, []);
   await page.close();
 });
 
