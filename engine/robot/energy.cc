@@ -33,14 +33,14 @@ MovementPower MovementPowerOf(const RobotConfig& robot, const EnvironmentConfig&
   return PaperModel(craft, air, robot, energy);
 }
 
-double SensingEnergyJ(const SensingConfig& sensing) { return sensing.PowerW() * sensing.period_s; }
+double SensingEnergyJ(const SensingConfig& sensing) { return sensing.PowerW() * sensing.period_s; }  // Eq. 3
 
 ComputationCost Computation(const CpuConfig& cpu, const SensingConfig& sensing, double gflop_per_frame,
                             double frequency_hz) {
   const double flop = sensing.Frames() * gflop_per_frame * 1e9;  // N(I_s, s) alpha_l, Eq. 7
   ComputationCost cost;
-  cost.time_s = flop / (cpu.flops_per_cycle * cpu.cores * frequency_hz);
-  cost.energy_j = cpu.capacitance * flop * frequency_hz * frequency_hz / cpu.flops_per_cycle;
+  cost.time_s = flop / (cpu.flops_per_cycle * cpu.cores * frequency_hz);                       // Eq. 5
+  cost.energy_j = cpu.capacitance * flop * frequency_hz * frequency_hz / cpu.flops_per_cycle;  // Eq. 6
   return cost;
 }
 
