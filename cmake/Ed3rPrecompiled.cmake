@@ -68,7 +68,7 @@ function(ed3r_reads_precompiled target name)
   target_compile_options(${target} PRIVATE -fpch-preprocess)  # without it ccache cannot keep what is compiled so
   if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     # GCC 12 takes the space for short texts inside a std::string for the whole text where <string> is precompiled.
-    target_compile_options(${target} PRIVATE -Wno-array-bounds)
+    target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
   endif()
   target_precompile_headers(${target} REUSE_FROM ${name})
 endfunction()
