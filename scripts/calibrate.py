@@ -103,10 +103,11 @@ def main():
     steps = options.steps or STEPS[:2]
     if unknown := [step for step in steps if step not in STEPS]:
         parser.error(f"STEP: '{unknown[0]}' is not allowed; allowed: {' '.join(STEPS)}")
-    search = Search(options.again or FOLDER, (options.again or flights.ROOT / "results/runs") / "calibration")
+    again = options.again and options.again.resolve()  # sweep files there name world files beside them by whole paths
+    search = Search(again or FOLDER, (again or flights.ROOT / "results/runs") / "calibration")
     if "waves" in steps:
         search.waves()
-    if "freeze" in steps and not options.again:
+    if "freeze" in steps and not again:
         from calibration import freeze
         freeze.freeze(search.rows, FOLDER, JUDGING)
     if "predict" in steps:
