@@ -29,7 +29,8 @@ struct AgentContext {
   double epsilon = 1.0;  // of this mission where the Algorithm forces none (R20)
 };
 
-// max(epsilon_min, decay^mission) (R20); strategies that walk at random do not ask.
+// max(epsilon_min, decay^i) (R20), i the mission's number in an online phase of epsilon_missions: any missions in a row are
+// spread over it evenly, and that many in a row are each of it once. Strategies that walk at random do not ask.
 double EpsilonOfMission(const AgentsConfig& agents, int mission);
 
 }  // namespace ed3r::agents

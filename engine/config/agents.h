@@ -60,6 +60,7 @@ struct AgentsConfig {
   double energy_scale_j = 10000.0;
   double epsilon_min = 0.01;
   double epsilon_decay = 0.95;
+  int epsilon_missions = 850;
   ElseBranch else_branch = ElseBranch::kDecayed;
   RandomExecution random_execution = RandomExecution::kCoin;
   double region_size_m = 60.0;
@@ -142,6 +143,13 @@ struct AgentsConfig {
            .max = 1,
            .source = "Table ED3R configuration, R20",
            .meaning = "decay of epsilon per mission"});
+    visit("epsilon_missions", self.epsilon_missions,
+          {.min = 0,
+           .max = 1e6,
+           .source = "R20, the paper's 850",
+           .meaning = "length of the online phase over which epsilon decays; missions are drawn from it "
+                      "evenly, so that few "
+                      "explore as much as many. 0: they are its first ones"});
     visit("else_branch", self.else_branch,
           {.source = "R20", .meaning = "epsilon in normal operation: decayed, or the Algorithm's 0"});
     visit("random_execution", self.random_execution,

@@ -67,10 +67,14 @@ agents::Networks NetworkShelf::For(const sweep::RunId& id, int places) const {
   return {pair.rc.get(), pair.robot.get()};
 }
 
+int NetworkOfMission(int mission, int places, int networks) {
+  return (mission % places + mission / places) % networks;
+}
+
 int NetworkShelf::SeedIndex(const sweep::RunId& id, int places) const {
   const auto found = by_arm_.find({id.stage, id.arm});
   if (found == by_arm_.end()) return -1;
-  return id.mission / places % static_cast<int>(found->second.size());
+  return NetworkOfMission(id.mission, places, static_cast<int>(found->second.size()));
 }
 
 store::FlownNetworks NetworkShelf::Flown() const {

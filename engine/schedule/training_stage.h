@@ -23,6 +23,10 @@
 
 namespace ed3r::schedule {
 
+// Which of several networks flies a mission of an arm. They take turns, so shifted from round to round of the `places` (sites
+// times base stations) that each meets each place as often and none flies the first missions alone.
+int NetworkOfMission(int mission, int places, int networks);
+
 // A network that was trained or found in the cache.
 struct ShelvedNetwork {
   std::string name;  // "rc from random, eta_min 0.75, seed 1"
@@ -33,8 +37,7 @@ struct ShelvedNetwork {
 // Networks by the arm that asks for them. Immutable once made; shared read-only by all missions.
 class NetworkShelf {
  public:
-  // Those of one mission. Missions of an arm take turns among the arm's training seeds, `places` missions at a time, so
-  // that every network meets every site and base station. All null for arms that ask none.
+  // Those of one mission, by NetworkOfMission. All null for arms that ask none.
   agents::Networks For(const sweep::RunId& id, int places) const;
   // Which of its arm's training seeds a mission flies with; -1 without networks.
   int SeedIndex(const sweep::RunId& id, int places) const;

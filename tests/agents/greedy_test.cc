@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "engine/agents/features.h"
 #include "engine/agents/remote_controller.h"
@@ -75,10 +76,33 @@ TEST_F(GreedyTest, EpsilonIsAShareOfTimesteps) {
 }
 
 TEST_F(GreedyTest, EpsilonDecaysPerMissionToItsFloor) {
-  const AgentsConfig agents;
+  AgentsConfig agents;
+  agents.epsilon_missions = 0;
   EXPECT_EQ(EpsilonOfMission(agents, 0), 1.0);
   EXPECT_NEAR(EpsilonOfMission(agents, 10), std::pow(0.95, 10), 1e-12);
   EXPECT_EQ(EpsilonOfMission(agents, 849), 0.01);
+}
+
+// A run of 56 missions explores as much as one of 850: what it measures does not hang on how many are flown.
+TEST_F(GreedyTest, AnyMissionsInARowExploreAlike) {
+  const AgentsConfig agents;
+  std::multiset<double> phase, numbered;
+  for (int i = 0; i < 850; ++i) {
+    phase.insert(EpsilonOfMission(agents, 7000 + i));
+    AgentsConfig in_order;
+    in_order.epsilon_missions = 0;
+    numbered.insert(EpsilonOfMission(in_order, i));
+  }
+  EXPECT_EQ(phase, numbered) << "each mission of the online phase once";
+  for (int first = 0; first < 850; ++first) {
+    int early = 0;  // of the first 85, a tenth
+    for (int i = first; i < first + 50; ++i) early += EpsilonOfMission(agents, i) > std::pow(0.95, 84.5);
+    EXPECT_GE(early, 4) << first;
+    EXPECT_LE(early, 6) << first;
+  }
+  AgentsConfig one;
+  one.epsilon_missions = 1;
+  EXPECT_EQ(EpsilonOfMission(one, 5), 1.0);
 }
 
 TEST_F(GreedyTest, ARandomWalkIsAllExploration) {
