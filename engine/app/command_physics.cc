@@ -6,6 +6,7 @@
 #include "engine/app/commands.h"
 #include "engine/app/settings.h"
 #include "engine/radio/link.h"
+#include "engine/robot/airframe.h"
 #include "engine/robot/energy.h"
 
 namespace ed3r::app {
@@ -67,6 +68,8 @@ int Print(const Options& options) {
              config.point.radio_bandwidth_hz / 1e6, config.point.radio_shadowing_db);
   for (const Row& row : rows)
     fmt::print("  {:<22} {:>14.6g} {:<6} {}\n", row.name, row.value, row.unit, row.meaning);
+  for (const std::string& problem : {robot::CheckFlyable(config), robot::CheckBilledPower(config)})
+    if (!problem.empty()) fmt::print("\nno mission flies with this: {}\n", problem);
   return kDone;
 }
 

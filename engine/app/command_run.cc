@@ -12,6 +12,7 @@
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/interrupt.h"
+#include "engine/schedule/inputs.h"
 #include "engine/schedule/sweep_runner.h"
 #include "engine/store/reader.h"
 #include "studies/report/load.h"
@@ -33,10 +34,13 @@ std::string NetworksText(const std::vector<schedule::ShelvedNetwork>& networks) 
   std::string text;
   for (const schedule::ShelvedNetwork& network : networks) {
     const rfnn::TrainingReport& report = network.model->data().report;
-    text +=
-        fmt::format("network {}: {}, best {}; R2 train {:.3f}, validation {:.3f}, held out {:.3f}; {}\n",
-                    network.name, Counted(static_cast<std::int64_t>(report.curve.size()), "epoch"),
-                    report.best_epoch, report.train.r2, report.validation.r2, report.test.r2, network.file);
+    text += fmt::format(
+        "network {}: {}, best {}; R2 train {:.3f}, validation {:.3f}, held out {:.3f}{}; {}\n", network.name,
+        Counted(static_cast<std::int64_t>(report.curve.size()), "epoch"), report.best_epoch, report.train.r2,
+        report.validation.r2, report.test.r2,
+        report.test.r2 < 0.0 ? " (foresees no better than a mean: it wants more warm-up missions or epochs)"
+                             : "",
+        network.file);
   }
   return text;
 }
@@ -88,7 +92,7 @@ int TrainAPart(const sweep::SweepPlan& plan, const Options& options, const sched
   if (options.from.empty())
     throw UserError(
         "--from: is missing; a part of a training stage learns from the run that holds the warm-up");
-  schedule::CheckTraining(plan);
+  schedule::CheckPlan(plan);
   CheckFoundation(plan, options);
   InstallInterruptHandler();
   const std::vector<schedule::ShelvedNetwork> networks =

@@ -15,7 +15,8 @@ void ApplySettings(const std::vector<std::string>& settings, Scope scope, Config
     if (setting.substr(0, equals) == "robot") {
       for (const sweep::Setting& part :
            sweep::ReadAirframeFile(setting.substr(equals + 1), "--set " + setting))
-        SetParameter(config, part.key, part.text, scope);  // checked when it was read
+        if (const std::string problem = SetParameter(config, part.key, part.text, scope); !problem.empty())
+          throw UserError(fmt::format("--set {}: {}", setting, problem));
       continue;
     }
     const std::string problem =

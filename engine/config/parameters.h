@@ -29,14 +29,14 @@ const std::vector<std::string>& ParameterKeys();
 // Why a value was refused: a clause that starts with the key and holds the value, the allowed range and, for
 // an unknown key, the nearest known one. The caller puts file:line:column in front. Sets `key` from text.
 // Returns "" when done, else the clause; the config is then unchanged.
-std::string SetParameter(Config& config, std::string_view key, std::string_view value,
-                         Scope scope = Scope::kMission);
+[[nodiscard]] std::string SetParameter(Config& config, std::string_view key, std::string_view value,
+                                       Scope scope = Scope::kMission);
 
 // The value as text that SetParameter reads back to the same bits. Throws InternalError for an unknown key.
 std::string GetParameter(const Config& config, std::string_view key);
 
 // Rules between parameters (f_min <= f_max, eta_int <= eta_min, ...): "" or a clause like SetParameter's.
-std::string CheckParameters(const Config& config);
+[[nodiscard]] std::string CheckParameters(const Config& config);
 
 // "key=value\n" for every mission parameter, in order: the recipe of a run; equal configs give equal text.
 std::string CanonicalText(const Config& config);

@@ -1,5 +1,9 @@
 #include "engine/robot/energy.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "engine/robot/power/power_models.h"
 
 namespace ed3r::robot {
@@ -23,6 +27,12 @@ MovementPower MomentumModel(const Rotorcraft& craft, const Air& air, double spee
   return {power_w(0.0, 0.0), power_w(speed_mps, 0.0), power_w(0.0, speed_mps), power_w(0.0, -speed_mps)};
 }
 
+double DescentW(const Config& config, double speed_mps) {
+  RobotConfig robot = config.robot;
+  robot.speed_mps = speed_mps;
+  return MovementPowerOf(robot, config.environment, config.energy).descent_w;
+}
+
 }  // namespace
 
 MovementPower MovementPowerOf(const RobotConfig& robot, const EnvironmentConfig& environment,
@@ -31,6 +41,22 @@ MovementPower MovementPowerOf(const RobotConfig& robot, const EnvironmentConfig&
   const Air air{environment.air_density_kgm3, environment.gravity_mps2};
   if (energy.model == PowerModel::kMomentum) return MomentumModel(craft, air, robot.speed_mps, energy);
   return PaperModel(craft, air, robot, energy);
+}
+
+std::string CheckBilledPower(const Config& config) {
+  const double speed_mps = config.robot.speed_mps;
+  const double power_w = DescentW(config, speed_mps);
+  if (power_w >= 0.0) return "";
+  double allowed_mps = 0.0;
+  for (double above_mps = speed_mps; above_mps - allowed_mps > 1e-3;) {
+    const double middle_mps = 0.5 * (allowed_mps + above_mps);
+    (DescentW(config, middle_mps) >= 0.0 ? allowed_mps : above_mps) = middle_mps;
+  }
+  return fmt::format(
+      "robot.speed_mps: '{:g}' is not allowed; a descent would charge the battery ({:.1f} W with "
+      "energy.vertical_form = "
+      "{}): at most {:.2f} m/s, or energy.vertical_form climb, or energy.model momentum",
+      speed_mps, power_w, NameOf(config.energy.vertical_form), std::floor(100.0 * allowed_mps) / 100.0);
 }
 
 double SensingEnergyJ(const SensingConfig& sensing) { return sensing.PowerW() * sensing.period_s; }  // Eq. 3

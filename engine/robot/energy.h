@@ -2,6 +2,9 @@
 // Pure functions of their arguments.
 #pragma once
 
+#include <string>
+
+#include "engine/config/config.h"
 #include "engine/config/energy.h"
 #include "engine/config/environment.h"
 #include "engine/config/robot.h"
@@ -18,6 +21,10 @@ struct MovementPower {
 // By energy.model: the paper's powers, or momentum theory at the same speeds (engine/robot/power).
 MovementPower MovementPowerOf(const RobotConfig& robot, const EnvironmentConfig& environment,
                               const EnergyConfig& energy);
+
+// Whether every movement of a mission draws power, as closed forms have it: "" or a clause like CheckParameters'. The paper's
+// power of a descent is weight less drag, which ends below nothing where the robot is fast.
+[[nodiscard]] std::string CheckBilledPower(const Config& config);
 
 // Eq. 3: all sensors over one sensing period.
 double SensingEnergyJ(const SensingConfig& sensing);

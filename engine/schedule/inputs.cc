@@ -12,6 +12,7 @@
 #include "engine/core/check.h"
 #include "engine/mission/scenario.h"
 #include "engine/robot/airframe.h"
+#include "engine/robot/energy.h"
 #include "engine/schedule/parallel_for.h"
 #include "engine/schedule/scheduler.h"
 #include "engine/schedule/training_stage.h"
@@ -20,10 +21,14 @@
 namespace ed3r::schedule {
 namespace {
 
-void CheckArm(const sweep::Arm& arm, const world::Scene& scene, std::uint64_t seed) {
-  agents::FindStrategy(arm.config.mission.strategy);
-  mission::DealScenario(scene, arm.config.mission, seed, 0);
-  robot::CheckFlyable(arm.config);
+// Tells of which arm an error is.
+template <class Check>
+void OfArm(const sweep::SweepPlan& plan, const sweep::Arm& arm, Check check) {
+  try {
+    check();
+  } catch (const UserError& error) {
+    throw UserError(fmt::format("{}: arm {}: {}", plan.file, arm.name, error.what()));
+  }
 }
 
 // Arms that look at the same scene with the same detectors share them.
@@ -61,20 +66,28 @@ std::map<std::string, std::shared_ptr<const world::Scene>> LoadScenes(const swee
 
 }  // namespace
 
-Inputs::Inputs(const sweep::SweepPlan& plan) {
+void CheckPlan(const sweep::SweepPlan& plan) {
   CheckTraining(plan);
+  for (const sweep::Stage& stage : plan.stages)
+    for (const sweep::Arm& arm : stage.arms)
+      OfArm(plan, arm, [&] {
+        agents::FindStrategy(arm.config.mission.strategy);
+        for (const std::string& problem :
+             {robot::CheckFlyable(arm.config), robot::CheckBilledPower(arm.config)})
+          if (!problem.empty()) throw UserError(problem);
+      });
+}
+
+Inputs::Inputs(const sweep::SweepPlan& plan) {
+  CheckPlan(plan);
   scenes_ = LoadScenes(plan);
-  for (const sweep::Stage& stage : plan.stages) {
-    for (const sweep::Arm& arm : stage.arms) {
-      try {
-        CheckArm(arm, SceneOf(arm.config), plan.seed);
+  for (const sweep::Stage& stage : plan.stages)
+    for (const sweep::Arm& arm : stage.arms)
+      OfArm(plan, arm, [&] {
+        mission::DealScenario(SceneOf(arm.config), arm.config.mission, plan.seed, 0);
         AddPixels(arm.config);
         AddNetworks(arm.config);
-      } catch (const UserError& error) {
-        throw UserError(fmt::format("{}: arm {}: {}", plan.file, arm.name, error.what()));
-      }
-    }
-  }
+      });
 }
 
 void Inputs::AddPixels(const Config& config) {

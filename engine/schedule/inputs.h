@@ -13,10 +13,14 @@
 
 namespace ed3r::schedule {
 
+// What is wrong with a plan whatever is in its files: training stages (CheckTraining), strategies, airframes. Throws
+// UserError that names the sweep file and the arm. Opens nothing.
+void CheckPlan(const sweep::SweepPlan& plan);
+
 class Inputs {
  public:
-  // Builds every world of the plan once, loads every detector once, and checks every arm against them: strategy, sites
-  // in play, airframe. Throws UserError that names the sweep file and the arm. Also CheckTraining. Writes nothing.
+  // Builds every world of the plan once, loads every detector once, and checks every arm against them: sites in play.
+  // Throws UserError that names the sweep file and the arm. Also CheckPlan. Writes nothing.
   explicit Inputs(const sweep::SweepPlan& plan);
 
   const world::Scene& SceneOf(const Config& config) const;

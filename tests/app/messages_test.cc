@@ -55,6 +55,25 @@ TEST(MessagesTest, AShardThatIsNoneIsRefusedAndBothWaysOfCountingAreTold) {
   EXPECT_NE(Help("run").find("0/N is N/N"), std::string::npos);
 }
 
+// Found by a newcomer: the closed form was billed where nothing looked, and failed mission by mission where something did.
+TEST(MessagesTest, WhatNoMissionCanFlyIsSaidBeforeAnyFlies) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "run").string();
+  const std::string why =
+      kRbs +
+      ": arm rbs: robot.speed_mps: '8' is not allowed; a descent would charge the battery (-6.4 W with "
+      "energy.vertical_form = printed): at most 7.21 m/s, or energy.vertical_form climb, or energy.model "
+      "momentum";
+  const std::string fast = " --set robot.speed_mps=8";
+  ExpectRefusal("plan " + kRbs + fast, why);
+  ExpectRefusal("run " + kRbs + fast + " --missions 2 --out " + out, why);
+  ExpectRefusal("slurm " + kRbs + fast + " --out " + out, why);
+  EXPECT_FALSE(fs::exists(out));
+  EXPECT_NE(Ed3r("physics" + fast).out.find("no mission flies with this: robot.speed_mps: '8'"),
+            std::string::npos);
+  EXPECT_EQ(Ed3r("plan " + kRbs + fast + " --set energy.vertical_form=climb").status, 0);
+}
+
 TEST(MessagesTest, ANumberIsWrittenInDigitsOrRefused) {
   const ScratchFolder scratch;
   const std::string out = (scratch / "run").string();

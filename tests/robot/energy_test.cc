@@ -69,6 +69,24 @@ TEST(EnergyTest, VerticalFlightInEachForm) {
   EXPECT_EQ(MovementPowerOf(fast, Thin(), energy).descent_w, 0.0) << "a descent does not charge the battery";
 }
 
+// As printed it draws m g - rho/2 A C v^3: 1.816 * 9.8 - 0.0473558 v^3 W, nothing from 7.2167 m/s on.
+TEST(EnergyTest, ADescentThatWouldChargeTheBatteryIsRefused) {
+  Config config;
+  config.robot.speed_mps = 7.21;
+  EXPECT_EQ(CheckBilledPower(config), "");
+  config.robot.speed_mps = 8;
+  EXPECT_EQ(CheckBilledPower(config),
+            "robot.speed_mps: '8' is not allowed; a descent would charge the battery (-6.4 W with "
+            "energy.vertical_form = "
+            "printed): at most 7.21 m/s, or energy.vertical_form climb, or energy.model momentum");
+  config.energy.vertical_form = VerticalForm::kClimb;
+  EXPECT_EQ(CheckBilledPower(config), "");
+  config = Config();
+  config.robot.speed_mps = 15;
+  config.energy.model = PowerModel::kMomentum;
+  EXPECT_EQ(CheckBilledPower(config), "");
+}
+
 TEST(EnergyTest, EfficiencyDividesWhatThePaperCallsMechanical) {
   EnergyConfig energy;
   const MovementPower ideal = MovementPowerOf(Heavy(), Thin(), energy);
