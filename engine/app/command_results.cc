@@ -117,7 +117,7 @@ Command AddStatus(Program& program) {
 namespace {
 
 struct ReportOptions {
-  std::string dir, out;
+  std::string dir, out, variant;
   std::string cache = "results/cache";
   bool json = false, no_figures = false, no_missions = false, force = false, claims = false;
 };
@@ -127,16 +127,17 @@ int MakeReportOf(const ReportOptions& options) {
   store::ResultReader reader(run.dir());
   reader.CheckWhole();  // before anything is written
   const report::RunResults results = report::LoadRun(run.dir());
-  const report::Report report =
-      report::MakeReport(results, report::ReadDepartures(reader),
-                         options.claims ? report::Judging::kEverything : report::Judging::kWhatThePaperFlew);
+  const report::Report report = report::MakeReport(
+      results, report::ReadDepartures(reader),
+      options.claims ? report::Judging::kEverything : report::Judging::kWhatThePaperFlew, options.variant);
   report::FolderOptions folder{.dir = run.dir(),
                                .out = options.out,
                                .figures = !options.no_figures,
                                .force = options.force,
                                .command = ""};
   folder.command = "ed3r report " + options.dir + (options.out.empty() ? "" : " --out " + options.out) +
-                   (options.claims ? " --claims" : "");
+                   (options.claims ? " --claims" : "") +
+                   (options.variant.empty() ? "" : " --variant " + options.variant);
   if (folder.out.empty()) folder.out = options.dir + "/report";
   WatchedMissions watched;
   if (!options.no_missions) watched = WatchMissions(report, results, run.dir(), options.cache);
@@ -172,6 +173,12 @@ Command AddReport(Program& program) {
   parser.Flag("--claims", options->claims,
               "Judge the paper's claims though another robot, world or parameter was flown than the paper's; "
               "otherwise verdicts are left out then");
+  parser
+      .Option("--variant", options->variant,
+              "Of a sweep with variants: the one that tables, pictures and verdicts tell; default the first. "
+              "All are told "
+              "in short and compared with the first")
+      .OneValue();
   parser.Flag("--no-figures", options->no_figures,
               "Draw nothing (no Python); the figures' data are still written");
   parser.Flag("--no-missions", options->no_missions,

@@ -253,8 +253,8 @@ std::vector<std::string> DepartureSentences(const RunDepartures& departures, con
         fmt::format("Unlike the paper, in numbers alone: {}.", DepartureText(told->second.effort)));
   std::vector<std::string> others;
   for (const auto& [name, of_variant] : departures)
-    if (name != variant && !of_variant.PaperFlown()) others.push_back(name);
-  if (!others.empty())
+    if (!of_variant.PaperFlown()) others.push_back(name);
+  if (others.size() > (told->second.PaperFlown() ? 0U : 1U))
     sentences.push_back(
         fmt::format("{} of {} variants are not as in the paper ({}); {}", others.size(), departures.size(),
                     Listed(others),

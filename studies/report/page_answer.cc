@@ -62,7 +62,7 @@ std::string Tells(const Difference& d, const char* of) {
   return text + fmt::format(" ({:.1f} to {:.1f}; p {}{}, {}{})", less ? -d.hi : d.lo, less ? -d.lo : d.hi,
                             d.p < 0.001 ? "" : "= ", d.p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", d.p),
                             d.p < kLevel ? "significant" : "not significant",
-                            d.one_network ? " but for the luck of training" : "");
+                            d.one_network ? ", the luck of training not counted: one network" : "");
 }
 
 // What a claim of the paper says of the two: for energy the saving in percent.
@@ -213,7 +213,9 @@ std::vector<std::string> AnswerSentences(const Report& report, const std::vector
   if (arms.empty()) return {};
   const metrics::ArmMetrics* subject = Named(arms, "ed3r-75");
   if (subject == nullptr) subject = Extreme(arms, Success, 1);
-  std::vector<std::string> sentences = {tables::ArmLabel(subject->name) + ' ' + Tells(*subject) + '.'};
+  std::vector<std::string> sentences;
+  if (const std::string note = VariantNote(report); !note.empty()) sentences.push_back(note);
+  sentences.push_back(tables::ArmLabel(subject->name) + ' ' + Tells(*subject) + '.');
   const metrics::ArmMetrics* rival = Rival(report, arms, *subject);
   if (rival == nullptr) return sentences;
   const std::vector<variants::ArmDifference> beside = variants::CompareArms(flown, subject->name);

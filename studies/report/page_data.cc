@@ -191,7 +191,7 @@ std::vector<int> NumbersOf(store::ResultReader& reader, const std::string& store
 PageMissions ReadPageMissions(const Report& report, const RunResults& results, const std::string& dir) {
   store::ResultReader reader(dir);
   PageMissions page;
-  page.variant = report.Variant();
+  page.variant = report.variant;
   const std::vector<metrics::ArmData> arms = variants::ArmsOfVariant(results.arms, page.variant);
   for (const metrics::ArmMetrics& told : report.told) {
     const metrics::ArmData* arm = Find(arms, told);

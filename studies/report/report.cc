@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/paper/arms.h"
@@ -38,9 +39,25 @@ bool MayJudgeAll(const Report& report) {
                      [&](const auto& entry) { return MayJudge(report, entry.first); });
 }
 
+// The number of the variant that is told.
+std::size_t TheVariant(const Report& report) {
+  const std::vector<std::string>& names = report.variants.variants;
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), report.variant) - names.begin());
+}
+
+std::string ChosenVariant(const std::vector<std::string>& names, const std::string& wanted) {
+  if (wanted.empty()) return names.empty() ? "" : names.front();
+  if (names.empty())
+    throw UserError(fmt::format("--variant: '{}' is not allowed; the run has no variants", wanted));
+  if (std::find(names.begin(), names.end(), wanted) == names.end())
+    throw UserError(
+        fmt::format("--variant: '{}' is not allowed; allowed: {}", wanted, fmt::join(names, ", ")));
+  return wanted;
+}
+
 claims::ClaimStudy ClaimsOf(const Report& report, const std::vector<metrics::ArmData>& arms) {
-  if (!report.variants.verdicts.empty()) return report.variants.verdicts.front();
-  if (MayJudge(report, report.Variant())) return claims::JudgeClaims(paper::PaperClaims(), arms);
+  if (!report.variants.verdicts.empty()) return report.variants.verdicts[TheVariant(report)];
+  if (MayJudge(report, report.variant)) return claims::JudgeClaims(paper::PaperClaims(), arms);
   claims::ClaimStudy unjudged;
   for (const metrics::ArmMetrics& arm : report.told)
     unjudged.networks = std::max(unjudged.networks, arm.networks);
@@ -80,13 +97,21 @@ void TakeP85Intervals(const claims::ClaimStudy& claims, std::vector<metrics::Arm
 
 }  // namespace
 
-std::string Report::Variant() const { return variants.variants.empty() ? "" : variants.variants.front(); }
-
 std::vector<std::string> Report::DepartureNotes() const {
-  return DepartureSentences(departures, Variant(), judging);
+  return DepartureSentences(departures, variant, judging);
 }
 
-Report MakeReport(const RunResults& results, const RunDepartures& departures, Judging judging) {
+std::string VariantNote(const Report& report) {
+  if (report.variants.variants.size() < 2) return "";
+  return fmt::format(
+      "Told here: the variant '{}', number {} of {}. The table of all variants tells the others in short, "
+      "'ed3r report DIR "
+      "--variant NAME' one of them as a whole.",
+      report.variant, TheVariant(report) + 1, report.variants.variants.size());
+}
+
+Report MakeReport(const RunResults& results, const RunDepartures& departures, Judging judging,
+                  const std::string& variant) {
   Report report;
   report.name = results.name;
   report.mixed_code = results.mixed_code;
@@ -94,11 +119,11 @@ Report MakeReport(const RunResults& results, const RunDepartures& departures, Ju
   report.judging = judging;
   report.variants = variants::CompareVariants(
       results.arms, MayJudgeAll(report) ? variants::Verdicts::kJudged : variants::Verdicts::kLeftOut);
+  report.variant = ChosenVariant(report.variants.variants, variant);
   const bool variants = !report.variants.variants.empty();
-  const std::vector<metrics::ArmData> first =
-      variants ? variants::ArmsOfVariant(results.arms, report.variants.variants.front())
-               : std::vector<metrics::ArmData>();
-  const std::vector<metrics::ArmData>& arms = variants ? first : results.arms;
+  const std::vector<metrics::ArmData> chosen =
+      variants ? variants::ArmsOfVariant(results.arms, report.variant) : std::vector<metrics::ArmData>();
+  const std::vector<metrics::ArmData>& arms = variants ? chosen : results.arms;
   for (const metrics::ArmData& arm : results.arms) report.arms.push_back(metrics::ComputeMetrics(arm));
   std::vector<metrics::ArmMetrics> p85;
   for (const metrics::ArmData& arm : arms) {
@@ -113,6 +138,7 @@ Report MakeReport(const RunResults& results, const RunDepartures& departures, Ju
   report.look_forward = tables::LookForwardOf(arms);
   TakeP85Intervals(report.claims, p85);
   report.tables = tables::MakeStudyTables(report.told, p85);
+  if (report.variants.variants.size() > 1) report.tables.push_back(tables::MakeVariantsTable(report.arms));
   if (!report.claims.HasArms())
     for (tables::StudyTable& table : report.tables)
       if (!table.note.empty())
@@ -132,8 +158,8 @@ std::string ReportText(const Report& report) {
   for (const std::string& note : report.DepartureNotes())
     text += tables::Wrap(note, "", tables::kTerminalWidth);
   text += '\n';
-  if (!report.variants.variants.empty())
-    text += fmt::format("Variant '{}':\n\n", report.variants.variants.front());
+  if (const std::string note = VariantNote(report); !note.empty())
+    text += tables::Wrap(note, "", tables::kTerminalWidth) + '\n';
   text += tables::ResultTable(report.told, paper::PaperClaims());
   const std::string generalisation = tables::GeneralisationTable(report.generalisation);
   if (!generalisation.empty()) text += '\n' + generalisation;
@@ -144,13 +170,14 @@ std::string ReportText(const Report& report) {
   const std::string verdicts = claims::VerdictText(report.claims);
   if (!verdicts.empty()) text += '\n' + verdicts;
   const std::string variants = variants::VariantText(report.variants);
-  return variants.empty() ? text : text + '\n' + variants;
+  if (variants.empty()) return text;
+  return text + '\n' + variants::VariantValuesText(report.arms) + '\n' + variants;
 }
 
 nlohmann::ordered_json ReportJson(const Report& report) {
   nlohmann::ordered_json json = {{"name", report.name}};
   if (!report.mixed_code.empty()) json["mixed_code"] = report.mixed_code;
-  const auto departures = report.departures.find(report.Variant());
+  const auto departures = report.departures.find(report.variant);
   json["paper"] = DeparturesJson(departures == report.departures.end() ? Departures() : departures->second,
                                  report.judging);
   json.update(tables::ResultJson(report.arms, paper::PaperClaims()));

@@ -33,7 +33,8 @@ struct Report {
   RunDepartures departures;
   Judging judging = Judging::kWhatThePaperFlew;
   std::vector<metrics::ArmMetrics> arms;
-  // What tables and verdicts tell: all arms, or those of the first variant where the study has variants.
+  std::string variant;  // that tables, verdicts and pictures tell; "" without variants
+  // What they tell: all arms, or those of that variant.
   std::vector<metrics::ArmMetrics> told;
   std::vector<tables::Generalisation> generalisation;  // one per arm told
   std::vector<tables::StudyTable> tables;              // for papers and pages
@@ -43,14 +44,17 @@ struct Report {
   std::vector<claims::ConvergencePoint> convergence;  // of the arms told
   std::vector<tables::LookForward> look_forward;      // of the arms told that ask a network
 
-  std::string Variant() const;                      // that is told; "" without variants
   std::vector<std::string> DepartureNotes() const;  // for its head
 };
 
 // `departures`: of all variants (ReadDepartures); a variant that is not in it is taken for the paper's. Claims are judged
-// as `judging` says, of variants only where all of them may be judged.
+// as `judging` says, of variants only where all of them may be judged. `variant` is told, "" for the first. Throws UserError
+// for one that the run has not.
 Report MakeReport(const RunResults& results, const RunDepartures& departures,
-                  Judging judging = Judging::kWhatThePaperFlew);
+                  Judging judging = Judging::kWhatThePaperFlew, const std::string& variant = "");
+
+// "Told here: the variant 'mass=2', 1 of 3 ..."; "" without variants.
+std::string VariantNote(const Report& report);
 
 // For a terminal of kTerminalWidth characters: heading, departures from the paper, result table, generalisation table, look-forward errors, differences of
 // the arms, verdicts on the claims.

@@ -22,10 +22,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* kManifest = "manifest.json";
 
-// Of a sweep with variants: of its first one.
+// Of a sweep with variants: of the one that is told.
 nlohmann::ordered_json FigureData(const Report& report, const RunResults& results, const std::string& dir) {
   store::ResultReader reader(dir);
-  const std::string variant = report.Variant();
+  const std::string variant = report.variant;
   std::vector<figures::ArmPlan> plans = figures::ReadArmPlans(reader.StoredRecipe().plan_text);
   std::erase_if(plans,
                 [&](const figures::ArmPlan& plan) { return sweep::ArmId::Of(plan.name).variant != variant; });

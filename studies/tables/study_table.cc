@@ -106,11 +106,9 @@ StudyTable MakeTable(const Description& description, const Arms& arms,
   return table;
 }
 
-}  // namespace
-
-std::vector<StudyTable> MakeStudyTables(std::span<const metrics::ArmMetrics> arms,
-                                        std::span<const metrics::ArmMetrics> p85) {
-  StudyTable all{"arms", "Every arm", {}, true, {}, {}, {}};
+// With the main metrics.
+StudyTable TableOfAll(const char* id, const char* title, std::span<const metrics::ArmMetrics> arms) {
+  StudyTable all{id, title, {}, true, {}, {}, {}};
   const std::vector<std::string> names = UniqueArmNames(arms);
   for (std::size_t a = 0; a < arms.size(); ++a) {
     if (arms[a].missions == 0) continue;
@@ -118,12 +116,24 @@ std::vector<StudyTable> MakeStudyTables(std::span<const metrics::ArmMetrics> arm
     all.labels.push_back(ArmLabel(names[a]));
   }
   for (const std::string_view metric : kMainMetrics) all.metrics.push_back(metrics::MetricIndex(metric));
+  return all;
+}
+
+}  // namespace
+
+std::vector<StudyTable> MakeStudyTables(std::span<const metrics::ArmMetrics> arms,
+                                        std::span<const metrics::ArmMetrics> p85) {
+  StudyTable all = TableOfAll("arms", "Every arm", arms);
   std::vector<StudyTable> tables;
   if (!all.arms.empty()) tables.push_back(std::move(all));
   for (const Description& description : Descriptions())
     if (const Arms found = FindTogether(arms, paper::ArmsOfComparison(description.id)); !found.empty())
       tables.push_back(MakeTable(description, found, p85));
   return tables;
+}
+
+StudyTable MakeVariantsTable(std::span<const metrics::ArmMetrics> arms) {
+  return TableOfAll("variants", "Every arm in every variant", arms);
 }
 
 std::string P85Note(std::span<const std::pair<std::string, double>> success) {

@@ -31,6 +31,9 @@ struct StudyTable {
 std::vector<StudyTable> MakeStudyTables(std::span<const metrics::ArmMetrics> arms,
                                         std::span<const metrics::ArmMetrics> p85);
 
+// "variants": every arm of every variant (ARM@VARIANT), the main metrics. Arms without missions are left out.
+StudyTable MakeVariantsTable(std::span<const metrics::ArmMetrics> arms);
+
 // What P85 groups are, of the arm labels and success rates (percent) given: "The longest 15 % of each arm's own missions, ...".
 std::string P85Note(std::span<const std::pair<std::string, double>> success);
 

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "engine/core/csv_table.h"
+#include "engine/sweep/arm_id.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/tables/layout.h"
 #include "studies/variants/difference_text.h"
@@ -49,6 +50,12 @@ std::string DifferenceTable(const VariantStudy& study) {
                  "chance (the three of an arm go together).",
                  stars, intervals, std::ceil(0.05 * static_cast<double>(intervals))),
              "", tables::kTerminalWidth);
+}
+
+std::string ValueCell(const metrics::MetricValue& value) {
+  if (std::isnan(value.lo)) return tables::FormatValue(value.value, 1);
+  return fmt::format("{} [{}, {}]", tables::FormatValue(value.value, 1), tables::FormatValue(value.lo, 1),
+                     tables::FormatValue(value.hi, 1));
 }
 
 std::string ChangeCounts(const VariantStudy& study) {
@@ -177,6 +184,24 @@ std::string ChangeTable(const VariantStudy& study) {
 }
 
 }  // namespace
+
+std::string VariantValuesText(std::span<const metrics::ArmMetrics> arms) {
+  std::string text = "All variants (95 % intervals)\n" + tables::Pad("arm", kArmWidth, tables::Align::kLeft) +
+                     tables::Pad("variant", kVariantWidth, tables::Align::kLeft);
+  for (const char* metric : kComparedMetrics)
+    text += tables::Pad(DifferenceHeading(metric), kCellWidth, tables::Align::kRight);
+  text += fmt::format("\n{}\n", tables::Rule(tables::kTerminalWidth));
+  for (const metrics::ArmMetrics& arm : arms) {
+    if (arm.missions == 0) continue;
+    const sweep::ArmId id = sweep::ArmId::Of(arm.name);
+    text += tables::Pad(id.name, kArmWidth, tables::Align::kLeft) +
+            tables::Pad(id.variant, kVariantWidth, tables::Align::kLeft);
+    for (const char* metric : kComparedMetrics)
+      text += tables::Pad(ValueCell(arm[metric]), kCellWidth, tables::Align::kRight);
+    text += "\n";
+  }
+  return text;
+}
 
 std::string VariantText(const VariantStudy& study) {
   if (study.variants.empty()) return "";

@@ -11,6 +11,7 @@
 
 #include "studies/claims/verdicts.h"
 #include "studies/metrics/arm.h"
+#include "studies/metrics/metrics.h"
 #include "studies/variants/paired.h"
 
 namespace ed3r::variants {
@@ -55,6 +56,10 @@ enum class Verdicts { kJudged, kLeftOut };
 
 // Nothing is compared, and `variants` is empty, where the arms have no variants.
 VariantStudy CompareVariants(std::span<const metrics::ArmData> arms, Verdicts verdicts);
+
+// Of every arm in every variant (ARM@VARIANT): the means of all of kComparedMetrics with their intervals, for a terminal of
+// kTerminalWidth characters.
+std::string VariantValuesText(std::span<const metrics::ArmMetrics> arms);
 
 // Differences, how many verdicts change (of two variants: which), and the sides of orders and comparisons, in lines of at most kTerminalWidth characters; empty without variants.
 std::string VariantText(const VariantStudy& study);

@@ -146,7 +146,7 @@ function variants(model) {
       "p",
       { class: "key" },
       "Each variant minus the first, paired by scenario, with 95 % intervals; bold where the interval does not hold 0." +
-        (model.data.compared ? "" : " Everything else on this page is of the first variant."),
+        (model.data.compared ? "" : " Pictures and other tables on this page are of one variant, which the first lines name."),
     ),
     sortedTable(
       [
