@@ -9,7 +9,7 @@
 #include "engine/app/expected_time.h"
 #include "engine/app/sweep_arguments.h"
 #include "engine/app/words.h"
-#include "engine/schedule/training_stage.h"
+#include "engine/schedule/inputs.h"
 
 namespace ed3r::app {
 namespace {
@@ -49,6 +49,15 @@ void PrintJson(const sweep::SweepPlan& plan, int threads, std::int64_t shards) {
   fmt::print("{}\n", object.dump(2));
 }
 
+std::string TrainingText(const sweep::SweepPlan& plan, int threads) {
+  const ExpectedTraining expected = ExpectedTrainingOf(plan);
+  if (expected.networks == 0) return "trains the networks that later stages ask for";
+  const double side_by_side = std::min<double>(threads, static_cast<double>(expected.networks));
+  return fmt::format("trains {}, at most about {:.1f} min on {}", Counted(expected.networks, "network"),
+                     expected.core_s * static_cast<double>(expected.networks) / side_by_side / 60.0,
+                     Counted(threads, "thread"));
+}
+
 std::string ShardsText(const sweep::Stage& stage, std::int64_t shards) {
   const ExpectedShards expected = ExpectedShardsOf(stage, shards);
   return fmt::format(
@@ -65,7 +74,7 @@ void PrintText(const sweep::SweepPlan& plan, int threads, std::int64_t shards) {
     for (std::size_t i = 0; i < stage.after.size(); ++i)
       fmt::print("{}{}", i == 0 ? " after " : ", ", stage.after[i]);
     if (stage.kind == sweep::StageKind::kTrain) {
-      fmt::print(": trains the networks that later stages ask for, unless the cache holds them\n");
+      fmt::print(": {}, unless the cache holds them\n", TrainingText(plan, threads));
       continue;
     }
     fmt::print(
@@ -97,7 +106,7 @@ Command AddPlan(Program& program) {
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
             const sweep::SweepPlan plan = options->sweep.Load();
-            schedule::CheckTraining(plan);
+            schedule::CheckPlan(plan);
             const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
             options->json ? PrintJson(plan, threads, options->shards)
                           : PrintText(plan, threads, options->shards);

@@ -20,6 +20,7 @@
 #include "engine/schedule/batch/shell.h"
 #include "engine/schedule/batch/slurm_limits.h"
 #include "engine/schedule/batch/slurm_scripts.h"
+#include "engine/schedule/inputs.h"
 #include "engine/schedule/training_stage.h"
 #include "studies/report/load.h"
 
@@ -97,7 +98,11 @@ schedule::SlurmOptions ScriptOptions(const Options& options, const std::string& 
 
 std::vector<schedule::BatchStep> Steps(const sweep::SweepPlan& plan, std::int64_t shards) {
   std::vector<double> expected_core_s;
-  for (const sweep::Stage& stage : plan.stages) expected_core_s.push_back(ExpectedCoreS(stage));
+  const ExpectedTraining training = ExpectedTrainingOf(plan);
+  for (const sweep::Stage& stage : plan.stages)
+    expected_core_s.push_back(stage.kind == sweep::StageKind::kTrain
+                                  ? training.core_s * static_cast<double>(training.networks)
+                                  : ExpectedCoreS(stage));
   return schedule::StepsOf(plan, shards, schedule::NeedsNetworks(plan) ? schedule::CountNetworks(plan) : 0,
                            expected_core_s);
 }
@@ -191,7 +196,7 @@ int Run(const Options& options) {
     throw UserError(fmt::format(
         "--scratch: '{}' is not allowed; allowed: a path, or a variable such as $TMPDIR", options.scratch));
   const sweep::SweepPlan plan = options.sweep.Load();
-  schedule::CheckTraining(plan);
+  schedule::CheckPlan(plan);
   const std::string run_dir = options.out.empty() ? DefaultRunDir(plan) : options.out;
   const fs::path folder = fs::path(run_dir) / "slurm";
   if (options.missing) return TellMissing(plan, options, folder, run_dir);

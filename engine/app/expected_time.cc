@@ -6,6 +6,7 @@
 
 #include "engine/agents/strategy.h"
 #include "engine/robot/energy.h"
+#include "engine/schedule/training_stage.h"
 
 namespace ed3r::app {
 namespace {
@@ -21,6 +22,11 @@ constexpr double kEarlyCompletionS = 280.0;
 // (results/scale.md, sweeps/default_world.yaml).
 constexpr double kEarlyCompletionSpread = 1.29;
 constexpr double kDepletionSpread = 0.03;
+
+// Timesteps of a warm-up mission (paper), and seconds that a sample takes in an epoch (paper.yaml: 115 thousand samples,
+// 2000 epochs, seven networks in 15 core minutes).
+constexpr double kWarmupTimesteps = 56.4;
+constexpr double kSampleS = 0.55e-6;
 
 bool MayEndEarly(const sweep::Arm& arm) {
   return agents::FindStrategy(arm.config.mission.strategy).early_completion &&
@@ -47,6 +53,24 @@ double ExpectedCoreS(const sweep::Stage& stage) {
   if (stage.kind == sweep::StageKind::kFly)
     for (const sweep::Arm& arm : stage.arms) core_s += stage.missions * ExpectedCoreS(arm);
   return core_s;
+}
+
+ExpectedTraining ExpectedTrainingOf(const sweep::SweepPlan& plan) {
+  const auto trains = [](const sweep::Stage& stage) { return stage.kind == sweep::StageKind::kTrain; };
+  if (std::count_if(plan.stages.begin(), plan.stages.end(), trains) != 1) return {};
+  const sweep::Stage& training = *std::find_if(plan.stages.begin(), plan.stages.end(), trains);
+  double missions = 0.0, epochs = 0.0, sharing = 1.0;
+  for (const sweep::Stage& stage : plan.stages) {
+    if (std::find(training.after.begin(), training.after.end(), stage.name) != training.after.end())
+      missions += static_cast<double>(stage.missions);
+    if (std::find(stage.after.begin(), stage.after.end(), training.name) == stage.after.end()) continue;
+    for (const sweep::Arm& arm : stage.arms) {
+      const TrainingConfig& config = arm.config.training;
+      epochs = std::max(epochs, static_cast<double>(config.epochs));
+      if (config.own_warmups) sharing = std::max(sharing, static_cast<double>(config.seeds));
+    }
+  }
+  return {schedule::CountNetworks(plan), missions / sharing * kWarmupTimesteps * epochs * kSampleS};
 }
 
 ExpectedShards ExpectedShardsOf(const sweep::Stage& stage, std::int64_t shards) {

@@ -13,6 +13,13 @@ double ExpectedCoreS(const sweep::Arm& arm);
 // For all missions of a stage; 0 for a training stage.
 double ExpectedCoreS(const sweep::Stage& stage);
 
+// What the networks of a plan take; none where nothing is trained, or by several stages.
+struct ExpectedTraining {
+  std::int64_t networks = 0;
+  double core_s = 0.0;  // of one of them, on one core
+};
+ExpectedTraining ExpectedTrainingOf(const sweep::SweepPlan& plan);
+
 // The tasks that a stage is divided into, as 'ed3r run --shard I/N' and 'ed3r slurm' do it.
 struct ExpectedShards {
   std::int64_t tasks = 0;          // no more than there are missions

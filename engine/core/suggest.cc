@@ -32,7 +32,9 @@ std::string NearestWord(std::string_view word, const std::vector<std::string>& c
     if (candidate.size() > kLongest) continue;
     const bool same_leaf = candidate.size() > word.size() + 1 && candidate.ends_with(word) &&
                            candidate[candidate.size() - word.size() - 1] == '.';
-    const std::size_t distance = same_leaf ? 0 : EditDistance(word, candidate);
+    const bool without_unit =
+        candidate.size() > word.size() && candidate.starts_with(word) && candidate[word.size()] == '_';
+    const std::size_t distance = same_leaf || without_unit ? 0 : EditDistance(word, candidate);
     if (distance < best_distance) {
       best = candidate;
       best_distance = distance;

@@ -71,7 +71,8 @@ std::string CheckSameRun(Connection& database, const std::string& dir, const Rec
                                   : GrowthOf(there, recipe, LearnedStages(database, ReadLayout(database)));
   if (!growth.Allowed())
     throw UserError(
-        fmt::format("{}: holds results of another recipe: {}; give another --out", dir, growth.difference));
+        fmt::format("{}: holds results of another recipe: {}; give another --out, or remove that folder", dir,
+                    growth.difference));
   const auto code = CodeDifference(there.code, same_plan ? recipe.code : CodeOfBoth(there.code, recipe.code));
   if (code && other_code == OtherCode::kRefuse)
     throw UserError(
@@ -79,7 +80,8 @@ std::string CheckSameRun(Connection& database, const std::string& dir, const Rec
                     "continue it with other code",
                     dir, *code));
   if (same_plan && !ReadLayout(database).SameMissions(layout))
-    throw UserError(fmt::format("{}: holds results of other stages, arms or seed; give another --out", dir));
+    throw UserError(fmt::format(
+        "{}: holds results of other stages, arms or seed; give another --out, or remove that folder", dir));
   return growth.what;
 }
 

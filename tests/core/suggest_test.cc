@@ -11,6 +11,7 @@ TEST(NearestWordTest, FindsSlips) {
   EXPECT_EQ(NearestWord("robot.mas_kg", kWords), "robot.mass_kg");
   EXPECT_EQ(NearestWord("robot.mass_gk", kWords), "robot.mass_kg");
   EXPECT_EQ(NearestWord("speed_mps", kWords), "robot.speed_mps");
+  EXPECT_EQ(NearestWord("robot.speed", kWords), "robot.speed_mps") << "the unit was forgotten";
 }
 
 TEST(NearestWordTest, StaysSilentWhenNothingIsNear) { EXPECT_EQ(NearestWord("zebra", kWords), ""); }

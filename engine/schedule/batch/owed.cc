@@ -86,8 +86,9 @@ class Books {
     if (reader.StoredRecipe().plan_text != plan_.CanonicalText())
       throw UserError(fmt::format(
           "{}: holds results of another plan, and what is owed cannot be counted against this one; "
-          "give another --out, or, where the sweep has only grown since, submit it as a whole "
-          "(without --missing): every task flies what it lacks",
+          "give the options (--set, --missions, --seed) that it was made with, or another --out; where the "
+          "sweep has only grown "
+          "since, submit it as a whole (without --missing): every task flies what it lacks",
           reader.dir()));
   }
 

@@ -132,7 +132,7 @@ std::string Directives(const std::string& sweep_name, const BatchStep& step, con
   if (!options.time.empty()) text += fmt::format("#SBATCH --time={}\n", options.time);
   if (!options.time.empty() && array) text += fmt::format("#SBATCH --signal=B:USR1@{}\n", kNotice_s);
   if (step.expected_core_s > 0)
-    text += fmt::format("# Expected: {:.1f} minutes a task\n",
+    text += fmt::format("# Expected: about {:.1f} minutes a task\n",
                         step.expected_core_s / 60 / static_cast<double>(step.tasks * cpus));
   return text + "#SBATCH --requeue\nset -uo pipefail\n. ./common.sh\n\n";
 }

@@ -33,7 +33,11 @@ std::vector<BatchStep> StepsOf(const sweep::SweepPlan& plan, std::int64_t shards
   for (std::size_t i = 0; i < plan.stages.size(); ++i) {
     const sweep::Stage& stage = plan.stages[i];
     if (stage.kind == sweep::StageKind::kTrain) {
-      if (networks > 0) add(BatchStep::Kind::kTrain, stage.name, stage.name).tasks = networks;
+      if (networks > 0) {
+        BatchStep& train = add(BatchStep::Kind::kTrain, stage.name, stage.name);
+        train.tasks = networks;
+        train.expected_core_s = expected_core_s[i];
+      }
       add(BatchStep::Kind::kCollect, stage.name, stage.name + "-collect");
       continue;
     }

@@ -27,7 +27,8 @@ struct BatchStep {
 };
 
 // Steps in the order in which they run, each after the one before it, numbered from 1 in their names.
-// `networks`: how many the training stages train (CountNetworks). `expected_core_s(stage)`: what a stage's flights take.
+// `networks`: how many the training stages train (CountNetworks). `expected_core_s`: what each stage takes, 0 where nobody
+// knows.
 std::vector<BatchStep> StepsOf(const sweep::SweepPlan& plan, std::int64_t shards, std::int64_t networks,
                                const std::vector<double>& expected_core_s);
 
