@@ -20,12 +20,20 @@ constexpr double kMostSwing = 0.15;  // from an attitude error, rate bandwidths
 
 Eigen::Vector3d Clamp(const Eigen::Vector3d& v, double limit) { return v.cwiseMax(-limit).cwiseMin(limit); }
 
+// From level to body z along a direction, the short way.
+Eigen::Quaterniond TiltAlong(const Eigen::Vector3d& up) {
+  const Eigen::Vector3d z = up.normalized();
+  return Eigen::Quaterniond(1.0 + z.z(), -z.y(), z.x(), 0.0).normalized();
+}
+
+Eigen::Quaterniond LevelAt(double yaw_rad) {
+  return Eigen::Quaterniond(std::cos(0.5 * yaw_rad), 0.0, 0.0, std::sin(0.5 * yaw_rad));
+}
+
 }  // namespace
 
 Eigen::Quaterniond AttitudeAlong(const Eigen::Vector3d& up, double yaw_rad) {
-  const Eigen::Vector3d z = up.normalized();
-  const Eigen::Quaterniond tilt = Eigen::Quaterniond(1.0 + z.z(), -z.y(), z.x(), 0.0).normalized();
-  return tilt * Eigen::Quaterniond(std::cos(0.5 * yaw_rad), 0.0, 0.0, std::sin(0.5 * yaw_rad));
+  return TiltAlong(up) * LevelAt(yaw_rad);
 }
 
 double YawOf(const Eigen::Quaterniond& q) {
@@ -77,25 +85,30 @@ FlightController::Force FlightController::WantedForce(const world::RigidBodyStat
   last_velocity_mps_ = state.velocity_mps;
   const Eigen::Vector3d speed_error_rate =
       r.acceleration_mps2 - measured + gain_.position_radps * (r.velocity_mps - state.velocity_mps);
-  return {force_n, r.jerk_mps3 + gain_.velocity_radps * speed_error_rate + integral_rate};
+  return {force_n, r.jerk_mps3 + gain_.velocity_radps * speed_error_rate + integral_rate,
+          airframe_.mass_kg / std::max(force_n.norm(), kLeastTurningForce * airframe_.WeightN())};
+}
+
+const Eigen::Quaterniond& FlightController::Heading(double yaw_rad) {
+  if (yaw_rad != yaw_rad_) {
+    yaw_rad_ = yaw_rad;
+    heading_ = LevelAt(yaw_rad);
+  }
+  return heading_;
 }
 
 Eigen::Vector3d FlightController::WantedRate(const Eigen::Quaterniond& attitude, const Force& force,
-                                             const FlightReference& r) const {
+                                             const FlightReference& r) {
   // Error as a rotation vector in body axes (small-angle form of the quaternion error).
-  Eigen::Quaterniond error = attitude.conjugate() * AttitudeAlong(force.newton, r.yaw_rad);
+  Eigen::Quaterniond error = attitude.conjugate() * (TiltAlong(force.newton) * Heading(r.yaw_rad));
   if (error.w() < 0.0) error.coeffs() = -error.coeffs();
   const Eigen::Vector3d angle = 2.0 * error.vec();
   const Eigen::Vector3d swing = Clamp(gain_.attitude_radps * angle, kMostSwing * gain_.rate_radps);
   const Eigen::Vector3d turn =
-      Clamp(PerForce(force) * (attitude.conjugate() * force.jerk_mps3), kMostTurn * gain_.attitude_radps);
+      Clamp(force.per_newton * (attitude.conjugate() * force.jerk_mps3), kMostTurn * gain_.attitude_radps);
   const double upright = (attitude * Eigen::Vector3d::UnitZ()).z();
   return {swing.x() - turn.y(), swing.y() + turn.x(),
           gain_.yaw_radps * angle.z() + upright * r.yaw_rate_radps};
-}
-
-double FlightController::PerForce(const Force& force) const {
-  return airframe_.mass_kg / std::max(force.newton.norm(), kLeastTurningForce * airframe_.WeightN());
 }
 
 Wrench FlightController::Step(const world::RigidBodyState& state, const FlightReference& r) {
@@ -105,7 +118,7 @@ Wrench FlightController::Step(const world::RigidBodyState& state, const FlightRe
   const Eigen::Vector3d soon_n = force.newton + kRotorLagS * airframe_.mass_kg * r.jerk_mps3;
   wrench.thrust_n = std::max(soon_n.dot(state.attitude * Eigen::Vector3d::UnitZ()), 0.0);
 
-  const Eigen::Vector3d turn_up = PerForce(force) * (state.attitude.conjugate() * r.snap_mps4);
+  const Eigen::Vector3d turn_up = force.per_newton * (state.attitude.conjugate() * r.snap_mps4);
   const Eigen::Vector3d rate_error = WantedRate(state.attitude, force, r) - state.rate_radps;
   const Eigen::Vector3d gain(gain_.rate_radps, gain_.rate_radps, gain_.yaw_rate_radps);
   const Eigen::Vector3d spin_up =

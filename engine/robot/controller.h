@@ -49,11 +49,12 @@ class FlightController {
   struct Force {
     Eigen::Vector3d newton;
     Eigen::Vector3d jerk_mps3;  // its derivative, per mass
+    double per_newton = 0.0;    // mass over its size
   };
   Force WantedForce(const world::RigidBodyState& state, const FlightReference& reference);
   Eigen::Vector3d WantedRate(const Eigen::Quaterniond& attitude, const Force& force,
-                             const FlightReference& reference) const;
-  double PerForce(const Force& force) const;
+                             const FlightReference& reference);
+  const Eigen::Quaterniond& Heading(double yaw_rad);
   Eigen::Vector3d LimitForceN(const Eigen::Vector3d& force_n) const;
 
   const Airframe& airframe_;
@@ -63,6 +64,9 @@ class FlightController {
   Eigen::Vector3d wind_mps_ = Eigen::Vector3d::Zero();  // as at the last hover
   Eigen::Vector3d last_velocity_mps_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d integral_mps2_ = Eigen::Vector3d::Zero();
+  // The heading asked for last: most steps ask for the same.
+  double yaw_rad_ = 0.0;
+  Eigen::Quaterniond heading_ = Eigen::Quaterniond::Identity();
 };
 
 // Level attitude of a heading, then tilted the short way until body z points along a direction (not straight

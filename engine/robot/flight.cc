@@ -196,13 +196,17 @@ bool Flight::Impl::TurnSettled() const {
   return std::abs(error_rad) < kSettledRad && std::abs(state.rate_radps.z()) < kSettledRadps;
 }
 
-// The safety rule at one step of a leg: looks when the LiDARs do, and compares.
+// The safety rule at one step of a leg: looks when the LiDARs do, and compares. Most legs end within what was seen: where the
+// robot would rest is asked only where it matters.
 bool Flight::Impl::MustBrake(LegWatch& watch, const Profile& profile, int step) const {
   if (step % scan_every == 0) {
-    const double next_rest_m = RestPoint(profile, (step + scan_every) * step_s, step_s);
-    watch.Tick(state.position_m, std::min(profile.Length(), next_rest_m));
+    double wanted_m = profile.Length();
+    if (watch.OutOfSight(wanted_m))
+      wanted_m = std::min(wanted_m, RestPoint(profile, (step + scan_every) * step_s, step_s));
+    watch.Tick(state.position_m, wanted_m);
   }
-  return watch.RestLimitM() < std::min(profile.Length(), RestPoint(profile, step * step_s, step_s));
+  return watch.RestLimitM() < profile.Length() &&
+         watch.RestLimitM() < RestPoint(profile, step * step_s, step_s);
 }
 
 Flight::Impl::LegResult Flight::Impl::FlyLeg(const Leg& leg) {
@@ -235,7 +239,7 @@ Flight::Impl::LegResult Flight::Impl::FlyLeg(const Leg& leg) {
       break;
     }
     ProfilePoint along = profile.At(time_s);
-    along.snap = profile.At(time_s + kRotorLagS).snap;
+    along.snap = profile.SnapAt(time_s + kRotorLagS);
     StepPhysics(ReferenceAt(start_m, leg.direction, along));
   }
   result.displacement_m = std::abs((state.position_m - start_m).dot(leg.direction));

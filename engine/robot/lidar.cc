@@ -83,8 +83,7 @@ void LegWatch::Scan(const Eigen::Vector3d& position_m) {
 void LegWatch::Tick(const Eigen::Vector3d& position_m, double wanted_m) {
   const Eigen::Vector3d moved = position_m - scanned_from_m_;
   const double drift_m = (moved - moved.dot(direction_) * direction_).norm();
-  const bool out_of_sight = seen_m_ < obstacle_m_ && wanted_m > seen_m_ - rule_.stand_off_m;
-  if (drift_m > rule_.drift_m || out_of_sight) Scan(position_m);
+  if (drift_m > rule_.drift_m || OutOfSight(wanted_m)) Scan(position_m);
 }
 
 }  // namespace ed3r::robot

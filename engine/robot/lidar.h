@@ -58,6 +58,11 @@ class LegWatch {
   // A tick of the LiDARs: the robot's position, and up to where along the leg a view is wanted.
   void Tick(const Eigen::Vector3d& position_m, double wanted_m);
 
+  // Whether a point along the leg is not yet seen to be free, nor known to lie behind an obstacle.
+  bool OutOfSight(double along_m) const {
+    return seen_m_ < obstacle_m_ && along_m > seen_m_ - rule_.stand_off_m;
+  }
+
   // Furthest point along the leg at which the robot may rest, from what was seen so far.
   double RestLimitM() const { return std::min(obstacle_m_, seen_m_) - rule_.stand_off_m; }
 

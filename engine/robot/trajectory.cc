@@ -121,6 +121,18 @@ ProfilePoint Profile::At(double time_s) const {
           .snap = per_s * (now.point.jerk - before.point.jerk)};
 }
 
+double Profile::FrontJerkAt(double time_s) const {
+  if (time_s <= 0.0 || time_s >= front_duration_s_) return 0.0;
+  int i = count_ - 1;
+  while (phases_[i].start_s > time_s) --i;
+  return phases_[i].start.point.jerk;
+}
+
+double Profile::SnapAt(double time_s) const {
+  if (time_s >= DurationS()) return 0.0;
+  return 1.0 / limits_.smoothing_s * (FrontJerkAt(time_s) - FrontJerkAt(time_s - limits_.smoothing_s));
+}
+
 void Profile::Append(double seconds, double jerk) {
   if (seconds <= 0.0) return;
   ED3R_CHECK(count_ < kMaxPhases, "too many phases");

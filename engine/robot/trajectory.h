@@ -31,6 +31,9 @@ class Profile {
   // The smoothed motion; before 0 at rest at the start, from DurationS() on at rest at the end.
   ProfilePoint At(double time_s) const;
 
+  // At(time_s).snap, alone.
+  double SnapAt(double time_s) const;
+
   ProfilePoint FrontAt(double time_s) const;
 
   double DurationS() const { return front_duration_s_ + limits_.smoothing_s; }
@@ -55,6 +58,7 @@ class Profile {
 
   static Node Advance(const Node& from, double seconds);
   Node NodeAt(double time_s) const;
+  double FrontJerkAt(double time_s) const;
   void Append(double seconds, double jerk);
   void SetEnd();
 

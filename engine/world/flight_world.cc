@@ -14,6 +14,7 @@
 #include <mutex>
 
 #include "engine/core/check.h"
+#include "engine/world/free_body.h"
 
 namespace ed3r::world {
 namespace {
@@ -32,11 +33,12 @@ constexpr int kSolverIterations = 4;
 constexpr double kCollisionMarginM = 0.005;
 // In air that is known to be clear a step moves the body and asks nothing of the scene. What is known is a cube
 // around the place where Bullet's tree of triangles was last asked, as wide as the robot in any attitude plus
-// this; near surfaces the question is put again after a shorter way. It exceeds a step's way (12 cm at 120
-// steps a second and the fastest that the parameters allow) and Bullet's margins (5 cm).
+// the first of these; near surfaces the second, and there the question is put again after that way.
 constexpr float kClearAirM = 1.0f;
 constexpr float kAskAgainM = 0.25f;
-constexpr double kReachM = 0.2;  // of contacts, beyond the hull
+// Of contacts, beyond the hull. It exceeds a step's way (12 cm at 120 steps a second and the fastest that the parameters
+// allow) and Bullet's margins (5 cm) together.
+constexpr double kReachM = 0.2;
 // The static body's bounds reach beyond every flight, so that the pair (robot, scene) is made once and kept.
 constexpr float kForeverM = 1e6f;
 
@@ -76,7 +78,8 @@ struct FlightWorld::Impl {
         world(&dispatcher, &broadphase, &solver, &configuration),
         scene(geometry.Shape()),
         box(ToBullet(0.5 * robot.size_m)),
-        body(BodyInfo(robot)) {
+        body(BodyInfo(robot)),
+        flying(FlyingAs(body, gravity_mps2, step_s)) {
     world.setGravity(btVector3(0, 0, static_cast<float>(-gravity_mps2)));
     world.getSolverInfo().m_numIterations = kSolverIterations;
     world.getSimulationIslandManager()->setSplitIslands(false);  // one body: nothing to split
@@ -107,16 +110,28 @@ struct FlightWorld::Impl {
     return info;
   }
 
+  // What Bullet makes of the same numbers.
+  static FreeBodySpec FlyingAs(const btRigidBody& body, double gravity_mps2, float step_s) {
+    return {.inverse_mass_pkg = body.getInvMass(),
+            .gravity_n = btVector3(0, 0, static_cast<float>(-gravity_mps2)) * (1.0f / body.getInvMass()),
+            .inertia_kgm2 = body.getLocalInertia(),
+            .inverse_inertia = body.getInvInertiaDiagLocal(),
+            .step_s = step_s};
+  }
+
   // Whether no surface can be touched in the coming step.
   bool InClearAir() {
-    const btVector3& at_m = body.getWorldTransform().getOrigin();
+    const btVector3& at_m = flying.Pose().getOrigin();
     const btVector3 moved_m = (at_m - asked_at_m).absolute();
-    const float farthest_m = std::max({moved_m.x(), moved_m.y(), moved_m.z()});
-    if (asked && farthest_m < (clear ? kClearAirM : kAskAgainM)) return clear;
-    const bool was_clear = asked && clear;
-    asked = true;
+    if (std::max({moved_m.x(), moved_m.y(), moved_m.z()}) < ask_after_m) return clear;
+    const bool was_clear = clear;
     asked_at_m = at_m;
+    ask_after_m = kClearAirM;
     clear = geometry.Clear(FromBullet(at_m), hull_radius_m + kReachM + kClearAirM);
+    if (!clear) {
+      ask_after_m = kAskAgainM;
+      clear = geometry.Clear(FromBullet(at_m), hull_radius_m + kReachM + kAskAgainM);
+    }
     // Contacts that Bullet remembers from before are over.
     if (clear && !was_clear)
       for (int i = 0; i < dispatcher.getNumManifolds(); ++i)
@@ -124,19 +139,19 @@ struct FlightWorld::Impl {
     return clear;
   }
 
-  // What stepSimulation does to a body that nothing touches, operation by operation (forces as the constraint
-  // solver's external impulses), so that both ways give the same bits.
-  void StepFreely() {
-    body.applyGravity();
-    const btVector3 push = body.getTotalForce() * body.getInvMass() * step_s;
-    btVector3 spin = body.getTotalTorque() * body.getInvInertiaTensorWorld() * step_s;
-    spin += body.computeGyroscopicImpulseImplicit_Body(step_s);
-    body.setLinearVelocity(body.getLinearVelocity() + push);
-    body.setAngularVelocity(body.getAngularVelocity() + spin);
-    btTransform next;
-    body.predictIntegratedTransform(step_s, next);
-    body.proceedToTransform(next);
-    body.clearForces();
+  // One step in which Bullet looks for contacts.
+  void StepWatched(const btVector3& force_n, const btVector3& torque_nm) {
+    body.setLinearVelocity(flying.VelocityMps());
+    body.setAngularVelocity(flying.RateRadps());
+    body.proceedToTransform(flying.Pose());
+    body.applyCentralForce(force_n);
+    body.applyTorque(torque_nm);
+    std::unique_lock<std::mutex> lock;
+    if (!stepped) lock = std::unique_lock(WorldMutex());
+    stepped = true;
+    world.stepSimulation(step_s, /*maxSubSteps=*/0);
+    flying.Set(body.getWorldTransform(), body.getLinearVelocity(), body.getAngularVelocity());
+    if (Touching()) ++contact_steps;
   }
 
   bool Touching() {
@@ -159,11 +174,12 @@ struct FlightWorld::Impl {
   SceneBody scene;
   btBoxShape box;
   btRigidBody body;
+  FreeBody flying;  // where the robot is; the body above follows it when Bullet is asked
   int contact_steps = 0;
   bool stepped = false;
-  // The last question about clear air, and its answer.
-  bool asked = false;
+  // The last question about clear air, its answer, and the way after which it is put again: 0 where none was put.
   bool clear = false;
+  float ask_after_m = 0.0f;
   btVector3 asked_at_m{0, 0, 0};
 };
 
@@ -179,44 +195,33 @@ FlightWorld::~FlightWorld() {
 }
 
 void FlightWorld::SetState(const RigidBodyState& state) {
-  btRigidBody& body = impl_->body;
   const Eigen::Quaternionf q = state.attitude.cast<float>();
-  const btTransform pose(btQuaternion(q.x(), q.y(), q.z(), q.w()), ToBullet(state.position_m));
-  body.setWorldTransform(pose);
-  body.setInterpolationWorldTransform(pose);
-  body.setLinearVelocity(ToBullet(state.velocity_mps));
-  body.setAngularVelocity(ToBullet(state.attitude * state.rate_radps));
-  body.updateInertiaTensor();
-  body.clearForces();
-  impl_->asked = false;
+  impl_->flying.Set(btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), ToBullet(state.position_m)),
+                    ToBullet(state.velocity_mps), ToBullet(state.attitude * state.rate_radps));
+  impl_->ask_after_m = 0.0f;
+  impl_->clear = false;
 }
 
 RigidBodyState FlightWorld::State() const {
-  const btRigidBody& body = impl_->body;
-  const btQuaternion q = body.getWorldTransform().getRotation();
+  const FreeBody& body = impl_->flying;
+  const btQuaternion& q = body.Attitude();
   RigidBodyState state;
-  state.position_m = FromBullet(body.getWorldTransform().getOrigin());
+  state.position_m = FromBullet(body.Pose().getOrigin());
   state.attitude = Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z());
-  state.velocity_mps = FromBullet(body.getLinearVelocity());
-  state.rate_radps = state.attitude.conjugate() * FromBullet(body.getAngularVelocity());
+  state.velocity_mps = FromBullet(body.VelocityMps());
+  state.rate_radps = state.attitude.conjugate() * FromBullet(body.RateRadps());
   ED3R_CHECK(state.position_m.allFinite() && state.velocity_mps.allFinite() && state.rate_radps.allFinite(),
              "the robot's state is not finite");
   return state;
 }
 
 void FlightWorld::Step(const Eigen::Vector3d& force_world_n, const Eigen::Vector3d& torque_body_nm) {
-  btRigidBody& body = impl_->body;
-  body.applyCentralForce(ToBullet(force_world_n));
-  body.applyTorque(body.getWorldTransform().getBasis() * ToBullet(torque_body_nm));
-  if (impl_->InClearAir()) {
-    impl_->StepFreely();
-    return;
-  }
-  std::unique_lock<std::mutex> lock;
-  if (!impl_->stepped) lock = std::unique_lock(WorldMutex());
-  impl_->stepped = true;
-  impl_->world.stepSimulation(impl_->step_s, /*maxSubSteps=*/0);
-  if (impl_->Touching()) ++impl_->contact_steps;
+  const btVector3 force_n = ToBullet(force_world_n);
+  const btVector3 torque_nm = impl_->flying.Pose().getBasis() * ToBullet(torque_body_nm);
+  if (impl_->InClearAir())
+    impl_->flying.Step(force_n, torque_nm);
+  else
+    impl_->StepWatched(force_n, torque_nm);
 }
 
 int FlightWorld::ContactSteps() const { return impl_->contact_steps; }

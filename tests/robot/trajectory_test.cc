@@ -31,6 +31,7 @@ void ExpectWithinLimits(const Profile& profile, const MotionLimits& limits, doub
     ASSERT_LE(std::abs(now.jerk), jerk_factor * limits.jerk_mps3 + 1e-6) << t;
     ASSERT_NEAR(now.position - last.position, 0.5 * step_s * (now.speed + last.speed), 1e-5) << t;
     ASSERT_NEAR(now.speed - last.speed, 0.5 * step_s * (now.acceleration + last.acceleration), 1e-4) << t;
+    ASSERT_EQ(profile.SnapAt(t), now.snap) << t;
     last = now;
   }
   EXPECT_EQ(last.position, profile.Length());

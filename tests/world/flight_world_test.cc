@@ -92,9 +92,9 @@ TEST(FlightWorldTest, TouchesTheTrunkThatItPushesInto) {
 // A tumbling robot, once where Bullet must look for contacts at every step, once in clear air.
 TEST(FlightWorldTest, NearSurfacesAndInClearAirMotionHasTheSameBits) {
   const Scene clear = FlatScene();
-  // Bare poles around the way, which stay a metre and more off the robot but inside of what counts as clear.
+  // Bare poles around the way, which stay a third of a metre off the robot but too near to count as clear.
   std::vector<Tree> poles;
-  for (const double y_m : {98.4, 101.6})
+  for (const double y_m : {99.1, 100.9})
     for (double x_m = 90.0; x_m < 130.0; x_m += 0.8)
       poles.push_back({.x_m = x_m,
                        .y_m = y_m,
@@ -119,7 +119,9 @@ TEST(FlightWorldTest, NearSurfacesAndInClearAirMotionHasTheSameBits) {
     return states;
   };
   ASSERT_TRUE(clear.Geometry().Clear({100, 100, 40}, 2.0));
-  ASSERT_FALSE(crowded.Geometry().Clear({100, 100, 40}, 2.0));
+  for (double x_m = 95; x_m < 115;
+       x_m += 0.1)  // within the hull, the reach of contacts and the shorter of the two ways
+    ASSERT_FALSE(crowded.Geometry().Clear({x_m, 100, 40}, 0.82)) << x_m;
   const std::vector<RigidBodyState> freely = fly(clear), watched = fly(crowded);
   for (std::size_t i = 0; i < freely.size(); ++i) {
     ASSERT_EQ(freely[i].position_m, watched[i].position_m) << "step " << i;
