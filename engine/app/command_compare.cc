@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -52,16 +53,30 @@ std::vector<std::string> DepartureLines(const report::RunDepartures& departures,
   return lines;
 }
 
+using Fingerprints = std::map<std::string, std::string>;
+
+// Files that both runs name alike and that hold something else in this one: worlds, networks, detectors.
+std::vector<std::string> OtherContents(const Fingerprints& first, const std::string& first_label,
+                                       const Fingerprints& here, const std::string& label) {
+  std::vector<std::string> lines;
+  for (const auto& [name, fingerprint] : here)
+    if (const auto there = first.find(name); there != first.end() && there->second != fingerprint)
+      lines.push_back(
+          fmt::format("{}: {} is not what it is in {}: its content differs.", label, name, first_label));
+  return lines;
+}
+
 std::string Wrapped(const std::vector<std::string>& lines) {
   std::string text;
   for (const std::string& line : lines) text += tables::Wrap(line, "", tables::kTerminalWidth);
   return lines.empty() ? text : text + '\n';
 }
 
-nlohmann::ordered_json JsonOf(const variants::VariantStudy& study,
-                              const std::vector<std::string>& departures) {
+nlohmann::ordered_json JsonOf(const variants::VariantStudy& study, const std::vector<std::string>& departures,
+                              const std::vector<std::string>& other_contents) {
   nlohmann::ordered_json json = {{"runs", study.variants},
                                  {"departures", departures},
+                                 {"other_contents", other_contents},
                                  {"differences", nlohmann::ordered_json::array()},
                                  {"changed_verdicts", nlohmann::ordered_json::array()}};
   for (const variants::VariantDifference& d : study.differences)
@@ -113,8 +128,9 @@ int Compare(const Options& options) {
     throw UserError(fmt::format("compare: {} is one run; at least two are needed", options.dirs.front()));
   std::vector<metrics::ArmData> arms;
   std::vector<report::ComparedRun> runs;
-  std::vector<std::string> labels;
+  std::vector<std::string> labels, other_contents;
   std::set<std::uint64_t> seeds;
+  Fingerprints first_inputs;
   report::RunDepartures departures;
   for (const std::string& dir : options.dirs) {
     const std::string label = LabelOf(dir);
@@ -126,19 +142,25 @@ int Compare(const Options& options) {
     reader.CheckWhole();
     const report::RunResults run = report::LoadRun(dir);
     seeds.insert(reader.Layout().seed);
+    const Fingerprints inputs = reader.StoredRecipe().inputs;
+    if (labels.size() == 1) first_inputs = inputs;
+    for (std::string& line : OtherContents(first_inputs, labels.front(), inputs, label))
+      other_contents.push_back(std::move(line));
     if (!variants::VariantsOf(run.arms).empty())
       throw UserError(fmt::format("{}: has variants of its own; 'ed3r report {}' compares them", dir, dir));
     departures[label] = report::ReadDepartures(reader)[""];
     for (metrics::ArmData& arm : variants::AsVariant(run.arms, label)) arms.push_back(std::move(arm));
     runs.push_back({label, dir, run});
   }
-  const std::vector<std::string> notes = DepartureLines(departures, labels, options.claims);
+  std::vector<std::string> notes = DepartureLines(departures, labels, options.claims);
   variants::VariantStudy study = variants::CompareVariants(
       arms, notes.empty() || options.claims ? variants::Verdicts::kJudged : variants::Verdicts::kLeftOut);
   study.same_draws = seeds.size() == 1;
   if (study.differences.empty())
     throw UserError(
         fmt::format("{}: no arm of the other runs has the name of one of its arms", options.dirs.front()));
+  const std::vector<std::string> departure_lines = notes;
+  notes.insert(notes.begin(), other_contents.begin(), other_contents.end());
   const std::string text = Wrapped(notes) + variants::VariantText(study);
   if (!options.out.empty()) {
     const fs::path out(options.out);
@@ -149,7 +171,7 @@ int Compare(const Options& options) {
     WriteFile(out / "manifest.json", ManifestOf(options.dirs, labels).dump(2) + "\n");
     WritePage(runs, study, notes, options);
   }
-  fmt::print("{}", options.json ? JsonOf(study, notes).dump(2) + "\n" : text);
+  fmt::print("{}", options.json ? JsonOf(study, departure_lines, other_contents).dump(2) + "\n" : text);
   return kDone;
 }
 

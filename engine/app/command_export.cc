@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -23,15 +24,29 @@ struct Options {
   bool csv = false, numpy = false, networks = false;
 };
 
-// "rc from random, eta_min 0.75, seed 1" -> "rc-from-random-eta_min-0.75-seed-1.onnx"
-std::string FileName(const std::string& network) {
+// "rc from random, eta_min 0.75, seed 1" -> "rc-from-random-eta_min-0.75-seed-1"
+std::string Stem(const std::string& network) {
   std::string name;
   for (const char c : network) {
     const bool kept = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
     if (kept) name += c;
     if (!kept && !name.empty() && name.back() != '-') name += '-';
   }
-  return name + ".onnx";
+  return name;
+}
+
+// By the networks' hashes. Arms that were trained otherwise have networks of one name, which differ in their files' names by
+// the beginning of their hash.
+std::map<std::string, std::string> FileNames(const store::FlownNetworks& flown) {
+  constexpr std::size_t kHashLetters = 12;
+  std::map<std::string, int> called;
+  for (const auto& [sha256, file] : flown.files) ++called[Stem(file.name)];
+  std::map<std::string, std::string> names;
+  for (const auto& [sha256, file] : flown.files) {
+    const std::string stem = Stem(file.name);
+    names[sha256] = (called[stem] == 1 ? stem : stem + '-' + sha256.substr(0, kHashLetters)) + ".onnx";
+  }
+  return names;
 }
 
 void ExportNetworks(store::ResultReader& reader, const std::filesystem::path& folder) {
@@ -39,6 +54,7 @@ void ExportNetworks(store::ResultReader& reader, const std::filesystem::path& fo
   if (flown.files.empty())
     throw UserError(fmt::format("{}: --networks: no trained network flew here", reader.dir()));
   MakeFolder(folder);
+  const std::map<std::string, std::string> names = FileNames(flown);
   std::set<std::string> done;
   for (const store::NetworkUse& use : flown.uses) {
     if (!done.insert(use.sha256).second) continue;
@@ -46,7 +62,7 @@ void ExportNetworks(store::ResultReader& reader, const std::filesystem::path& fo
     const rfnn::Model model =
         rfnn::OpenModel(file.model, fmt::format("{}: network '{}'", reader.dir(), file.name),
                         use.agent == "rc" ? rfnn::kRcNetwork : rfnn::kRobotNetwork);
-    const std::filesystem::path path = folder / FileName(file.name);
+    const std::filesystem::path path = folder / names.at(use.sha256);
     WriteFile(path, rfnn::OnnxBytes(model));
     fmt::print("{}: {}\n", path.string(), file.name);
   }

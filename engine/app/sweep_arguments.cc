@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <optional>
 
 #include "engine/agents/strategy.h"
 #include "engine/core/check.h"
+#include "engine/core/parse_number.h"
 #include "engine/sweep/sweep_file.h"
 #include "studies/metrics/definitions.h"
 
@@ -16,9 +16,8 @@ namespace {
 template <class Integer>
 std::optional<Integer> ParseOption(const char* option, const std::string& text, Integer min, Integer max) {
   if (text.empty()) return std::nullopt;
-  Integer value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < min || value > max)
+  const std::optional<Integer> value = ParseNumber<Integer>(text);
+  if (!value || *value < min || *value > max)
     throw UserError(fmt::format("{}: '{}' is not allowed; allowed: {} .. {}", option, text, min, max));
   return value;
 }

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <type_traits>
 
 #include "engine/core/check.h"
+#include "engine/core/parse_number.h"
 #include "engine/core/suggest.h"
 
 namespace ed3r {
@@ -52,11 +52,9 @@ std::optional<T> FromText(std::string_view text, const FieldInfo& info) {
     if (text.empty() || text.find('\n') != std::string_view::npos) return std::nullopt;
     return std::string(text);
   } else {
-    if (text.starts_with('+')) text.remove_prefix(1);
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    const double number = static_cast<double>(value);
+    const std::optional<T> value = ParseNumber<T>(WithoutPlus(text));
+    if (!value) return std::nullopt;
+    const double number = static_cast<double>(*value);
     if (!std::isfinite(number) || number < info.min || number > info.max) return std::nullopt;
     return value;
   }

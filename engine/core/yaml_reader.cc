@@ -6,7 +6,6 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/message.h"
+#include "engine/core/parse_number.h"
 #include "engine/core/suggest.h"
 #include "engine/core/utf8.h"
 
@@ -248,20 +248,18 @@ const std::string& TextOf(const YamlNode& node, std::string_view key) {
 std::uint64_t WholeNumberOf(const YamlNode& node, std::string_view key, std::uint64_t min,
                             std::uint64_t max) {
   const std::string& text = TextOf(node, key);
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < min || value > max)
+  const auto value = ParseNumber<std::uint64_t>(text);
+  if (!value || *value < min || *value > max)
     FailAt(node.at, fmt::format("{}: '{}' is not allowed; allowed: {} .. {}", key, text, min, max));
-  return value;
+  return *value;
 }
 
 double PositiveNumberOf(const YamlNode& node, std::string_view key) {
   const std::string& text = TextOf(node, key);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value > 0.0) || !std::isfinite(value))
+  const auto value = ParseNumber<double>(text);
+  if (!value || !(*value > 0.0) || !std::isfinite(*value))
     FailAt(node.at, fmt::format("{}: '{}' is not allowed; allowed: a number above 0", key, text));
-  return value;
+  return *value;
 }
 
 const std::string& NameOfThing(const YamlNode& node, std::string_view key) {

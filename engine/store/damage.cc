@@ -16,11 +16,19 @@ void AddLonelyTimesteps(Connection& database, const RunLayout& layout, std::vect
 }
 
 void AddStrayFailures(Connection& database, const RunLayout& layout, std::vector<DamagedMission>& found) {
-  Statement select(database, "SELECT run, mission FROM failures");
-  while (select.Step())
-    if (!layout.Place(select.Int(0), select.Int(1)))
-      found.push_back({select.Int(0), select.Int(1), layout.DescribeKeys(select.Int(0), select.Int(1)),
-                       "it is said to have failed, but the plan has no such mission"});
+  Statement select(
+      database,
+      "SELECT run, mission, EXISTS (SELECT 1 FROM missions WHERE missions.run = failures.run AND "
+      "missions.mission = failures.mission) FROM failures");
+  while (select.Step()) {
+    const char* const what = !layout.Place(select.Int(0), select.Int(1))
+                                 ? "it is said to have failed, but the plan has no such mission"
+                             : select.Int(2) != 0 ? "it is said to have failed, and its record is stored"
+                                                  : nullptr;
+    if (what != nullptr)
+      found.push_back(
+          {select.Int(0), select.Int(1), layout.DescribeKeys(select.Int(0), select.Int(1)), what});
+  }
 }
 
 }  // namespace

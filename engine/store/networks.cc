@@ -6,6 +6,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/sha256.h"
+#include "engine/store/schema.h"
 
 namespace ed3r::store {
 namespace {
@@ -53,6 +54,7 @@ void PutNetworks(Connection& database, const RunLayout& layout, const FlownNetwo
           layout.stages[static_cast<std::size_t>(use.stage)].arms[static_cast<std::size_t>(use.arm)].name,
           use.agent, there, use.sha256));
   }
+  SealNetworks(database);
 }
 
 FlownNetworks ReadNetworks(Connection& database, const RunLayout& layout) {

@@ -21,6 +21,7 @@ namespace ed3r::store {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x45443352;  // "ED3R"
+constexpr char kUsesKey[] = "networks";              // in the recipe: a checksum over flown_networks
 
 std::string TableDefinitions() {
   return fmt::format(R"(
@@ -99,6 +100,17 @@ void SealRecipe(Connection& database) {
   seal.Run(RecipeChecksum(database));
 }
 
+// Over which arm asks which network. The networks themselves have checksums of their own.
+std::string UsesChecksum(Connection& database) {
+  std::string bytes;
+  Statement rows(database, "SELECT run, seed, agent, sha256 FROM flown_networks ORDER BY run, seed, agent");
+  while (rows.Step())
+    for (int column = 0; column < rows.Columns(); ++column) AppendText(bytes, rows.Text(column));
+  Sha256 sha;
+  sha.Update(bytes);
+  return sha.Hex();
+}
+
 // A view may compute without end and a trigger may change what is written: whoever gives a file away decides what they do.
 void RefuseForeignSchema(Connection& database) {
   Statement select(
@@ -131,6 +143,16 @@ std::string NeededRecipeValue(Connection& database, std::string_view key) {
   return *value;
 }
 
+// What a writer changes meanwhile is seen whole or not at all.
+void CheckSeals(Connection& database) {
+  const Transaction moment(database, Transaction::Kind::kRead);
+  if (RecipeChecksum(database) != RecipeValue(database, "checksum"))
+    FailDamagedRecipe(database, "its plan, layout or inputs do not match their checksum");
+  const std::optional<std::string> uses = RecipeValue(database, kUsesKey);  // none in files of before
+  if (uses && *uses != UsesChecksum(database))
+    FailDamagedRecipe(database, "which arm flew which network does not match its checksum");
+}
+
 }  // namespace
 
 FileKind CheckFile(Connection& database, FileUse use) {
@@ -147,8 +169,7 @@ FileKind CheckFile(Connection& database, FileUse use) {
                                 database.file(), version));
   RefuseForeignSchema(database);
   const RecordTables tables(database);
-  if (version >= 2 && RecipeChecksum(database) != RecipeValue(database, "checksum"))
-    FailDamagedRecipe(database, "its plan, layout or inputs do not match their checksum");
+  if (version >= 2) CheckSeals(database);
   if (use == FileUse::kWrite && (version < kSchemaVersion || !tables.complete()))
     throw UserError(
         fmt::format("{}: written by an older ed3r (code {}): it can be read, but not continued; give "
@@ -223,6 +244,12 @@ void AddCode(Connection& database, const CodeIdentities& code) {
   Statement put(database, "INSERT OR IGNORE INTO code VALUES (?, ?)");
   for (const auto& [subsystem, identities] : code)
     for (const std::string& identity : identities) put.Run(subsystem, identity);
+  SealRecipe(database);
+}
+
+void SealNetworks(Connection& database) {
+  Statement seal(database, "INSERT OR REPLACE INTO recipe VALUES (?, ?)");
+  seal.Run(kUsesKey, UsesChecksum(database));
   SealRecipe(database);
 }
 

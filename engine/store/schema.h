@@ -1,6 +1,6 @@
 // The tables of DIR/results.sqlite, and how a file is recognised.
 //
-//   recipe          key, value: sweep, seed, plan, and a checksum over all tables down to runs
+//   recipe          key, value: sweep, seed, plan, a checksum over all tables down to runs, and one over flown_networks
 //   code            subsystem, identity: see recipe.h
 //   inputs          name, fingerprint (of worlds and of detectors)
 //   files, places   the content of every file that missions read, where it is small enough; what the plan calls it
@@ -63,6 +63,9 @@ void CreateMissionsIndex(Connection& database);
 
 // Adds identities of code to those that the file knows.
 void AddCode(Connection& database, const CodeIdentities& code);
+
+// Writes the checksum over flown_networks, after a change of it. Files of before have none until then. Call it in a transaction.
+void SealNetworks(Connection& database);
 
 Recipe ReadRecipe(Connection& database);  // without notes and files: notes belong to sessions
 std::vector<InputFile> ReadFiles(Connection& database);

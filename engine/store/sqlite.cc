@@ -162,10 +162,8 @@ void Connection::Fail() const {
     case SQLITE_PROTOCOL:
     case SQLITE_NOLFS:
       throw StoreError(fmt::format("{}: {}", file_, reason));
-    case SQLITE_ERROR:  // our SQL is right where its tables are
-      if (reason.starts_with("no such table") || reason.starts_with("no such column"))
-        throw UserError(fmt::format("{}: the file is damaged ({})", file_, reason));
-      [[fallthrough]];
+    case SQLITE_ERROR:  // our SQL is right where tables and header are as we made them
+      throw UserError(fmt::format("{}: the file is damaged ({})", file_, reason));
     default:
       throw InternalError(fmt::format("{}: SQLite: {}", file_, reason));
   }

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "engine/config/parameters.h"
+#include "engine/core/parse_number.h"
 #include "engine/sweep/sweep_file.h"
 
 namespace ed3r::sweep {
@@ -20,10 +21,8 @@ struct WrittenValue {
 };
 
 std::optional<double> Number(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const std::optional<double> value = ParseNumber<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 // Decimals of a number as written: 2 for 0.25, 3 for 1e-3, 0 for 20.

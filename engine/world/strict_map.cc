@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
 #include "engine/core/check.h"
+#include "engine/core/parse_number.h"
 #include "engine/core/suggest.h"
 
 namespace ed3r::world {
@@ -27,12 +27,7 @@ std::string ValueText(const YamlNode& node) {
 template <class T>
 std::optional<T> Parse(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::kScalar) return std::nullopt;
-  std::string_view text = node.text;
-  if (text.starts_with('+')) text.remove_prefix(1);
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  return ParseNumber<T>(WithoutPlus(node.text));
 }
 
 }  // namespace

@@ -55,6 +55,10 @@ NAMED = {
     "a network that is gone": "DELETE FROM networks",
     "an empty network": "UPDATE networks SET model = x''",
     "a network of nobody": "UPDATE flown_networks SET sha256 = 'x'",
+    "networks of each other's arms": "UPDATE flown_networks SET sha256 = (SELECT sha256 FROM networks WHERE name LIKE 'rc%' AND "
+                                     "networks.sha256 <> flown_networks.sha256) WHERE agent = 'rc'",
+    "a network of another arm": "UPDATE flown_networks SET run = 3 WHERE run = 5",
+    "a failure of a mission that is stored": "INSERT INTO failures VALUES (3, 3, 3, 4, 'x', 'y')",
     "another code": "UPDATE code SET identity = 'x'",
     "format 99": "PRAGMA user_version = 99",
     "format 0": "PRAGMA user_version = 0",

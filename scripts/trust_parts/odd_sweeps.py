@@ -32,11 +32,11 @@ def with_set(text):
 # What no sweep file may say. All are refused before anything is written.
 REFUSED_SWEEPS = {
     **{f"seed {text}": with_line(f"seed: {text}")
-       for text in ("-1", "1e309", ".nan", "99999999999999999999999", "1.5", "0x10", "true", "''", "[1]", "{a: 1}", "~")},
+       for text in ("-1", "1e309", ".nan", "99999999999999999999999", "1.5", "0x10", "010", "true", "''", "[1]", "{a: 1}", "~")},
     **{f"missions {text}": with_line(f"missions: {text}")
-       for text in ("0", "-1", "1e309", ".inf", "2147483648", "9223372036854775808", "1.5", "many", "''", "[2]")},
+       for text in ("0", "-1", "1e309", ".inf", "2147483648", "9223372036854775808", "1.5", "010", "many", "''", "[2]")},
     **{f"mass {text}": with_set(f"robot.mass_kg: {text}")
-       for text in (".nan", ".inf", "-.inf", "nan", "inf", "1e309", "-1e309", "'1,5'", "1.5 kg", "1.5.5", "0x1p1", "''", "[1, 2]", "'１.5'")},
+       for text in (".nan", ".inf", "-.inf", "nan", "inf", "1e309", "-1e309", "'1,5'", "1.5 kg", "1.5.5", "0x1p1", "02", "+-2", "''", "[1, 2]", "'１.5'")},
     **{f"name {name[:20]!r}": with_line(f"name: {name}")
        for name in ("../../odd", "a/b", ".", "..", "''", "'a\\0b'", '"a\\0b"', '"a\\nb"', "n" * 100_000, "-", "--out", "~")},
     "a key twice": PLAIN + "missions: 3\n",
@@ -120,8 +120,8 @@ REFUSED_WORLDS = {
 REFUSED_OPTIONS = (
     *(("--threads", text) for text in ("-1", "x", "1e9", "99999999999", "", "010", "0x2", " 2")),
     *(("--shard", text) for text in ("0/0", "1/0", "5/4", "-1/4", "1/99999999999999999999", "1", "/", "1/2/3", "a/b", "")),
-    *(("--missions", text) for text in ("0", "-1", "x", "nowhere=3", "=3", "online=", "1e309", "")),
-    *(("--seed", text) for text in ("-1", "x", "1e3", "99999999999999999999999", "")),
+    *(("--missions", text) for text in ("0", "010", "-1", "x", "nowhere=3", "=3", "online=", "1e309", "")),
+    *(("--seed", text) for text in ("-1", "010", "x", "1e3", "99999999999999999999999", "")),
     *(("--set", text) for text in ("robot.mass_kg", "=1", "robot.mass_kg=", "robot.mass_kg=1=2", "robot.mass_kg=nan", "", "robot.mass_kg=1e309",
                                    "robot.masskg=2", "mission.world=/dev/zero", "\ufeffrobot.mass_kg=2", "robot.mass_kg=2\n")),
     ("--stage", "nowhere"), ("--stage", ""), ("--cache", ""), ("--out", ""),

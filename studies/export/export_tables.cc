@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/core/check.h"
 #include "engine/core/csv_table.h"
 #include "engine/core/file.h"
 #include "engine/store/columns.h"
@@ -157,11 +158,13 @@ std::unique_ptr<TableFile> Open(ExportFormat format, const std::filesystem::path
 std::vector<ExportedTable> ExportTables(store::ResultReader& reader, ExportFormat format,
                                         const std::filesystem::path& folder) {
   MakeFolder(folder);
-  std::int64_t missions = 0, timesteps = 0;
+  std::vector<sweep::RunId> counted;
+  std::int64_t timesteps = 0;
   reader.ForEachMission(store::Steps::kSkip, [&](const store::StoredMission& mission) {
-    ++missions;
+    counted.push_back(mission.id);
     if (mission.keeps_timesteps) timesteps += mission.record.timesteps;
   });
+  const std::int64_t missions = std::ssize(counted);
   const store::RunLayout layout = reader.Layout();
   const std::size_t width = LongestWord(layout);
   std::vector<ExportedTable> written(2);
@@ -169,15 +172,22 @@ std::vector<ExportedTable> ExportTables(store::ResultReader& reader, ExportForma
       Open<mission::MissionRecord>(format, folder / "missions", missions, width, written[0]);
   const auto step_table =
       Open<mission::TimestepRecord>(format, folder / "timesteps", timesteps, width, written[1]);
-  std::int64_t seen = 0;
+  std::int64_t missions_written = 0, timesteps_written = 0;
   reader.ForEachMission(store::Steps::kLoad, [&](const store::StoredMission& mission) {
-    if (++seen > missions) return;  // stored since they were counted
+    // One that has been stored since they were counted may stand anywhere.
+    if (!std::binary_search(counted.begin(), counted.end(), mission.id)) return;
     const store::RunLayout::Stage& stage = layout.stages[static_cast<std::size_t>(mission.id.stage)];
     const RowKey key{stage.name, stage.arms[static_cast<std::size_t>(mission.id.arm)].name,
                      mission.id.mission};
     WriteRow(key, mission.record, *mission_table);
     for (const mission::TimestepRecord& step : mission.record.steps) WriteRow(key, step, *step_table);
+    ++missions_written;
+    timesteps_written += std::ssize(mission.record.steps);
   });
+  if (missions_written != missions || timesteps_written != timesteps)
+    throw UserError(
+        fmt::format("{}: missions were taken out while it was exported; the same command again exports it",
+                    reader.dir()));
   mission_table->Commit();
   step_table->Commit();
   return written;

@@ -1,13 +1,11 @@
 #include "studies/flight_logs/airdata_log.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <ranges>
 
 #include "engine/core/check.h"
 #include "studies/flight_logs/battery.h"
@@ -32,6 +30,12 @@ const std::map<std::string, double>& Units() {
   return units;
 }
 
+std::string UnitNames() {
+  std::string names;
+  for (const auto& [unit, factor] : Units()) names += (names.empty() ? "" : " | ") + unit;
+  return names;
+}
+
 // A column "name(unit)" with the factor to SI units.
 class UnitColumn {
  public:
@@ -43,8 +47,7 @@ class UnitColumn {
       const auto factor = Units().find(unit);
       if (factor == Units().end())
         throw UserError(fmt::format("{}:1:1: column '{}': the unit '{}' is not known; allowed: {}",
-                                    table.path(), table.columns()[i], unit,
-                                    fmt::join(std::views::keys(Units()), " | ")));
+                                    table.path(), table.columns()[i], unit, UnitNames()));
       index_ = i;
       factor_ = sign * factor->second;
       return;

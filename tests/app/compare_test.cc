@@ -48,6 +48,35 @@ TEST_F(CompareTest, DifferencesArePairedAndWritten) {
     EXPECT_FALSE(ReadAll(fs::path(out) / file).empty()) << file;
 }
 
+TEST_F(CompareTest, WorldsOfOneNameThatDifferAreTold) {
+  const ScratchFolder scratch;
+  fs::copy_file(ED3R_SOURCE_DIR "/sweeps/worlds/ridges.yaml", scratch / "world.yaml");
+  std::ofstream(scratch / "study.yaml")
+      << "name: study\nseed: 2\nmissions: 2\nset: {mission.world: world.yaml, strategy: rbs}\n";
+  const auto fly = [&](const std::string& name) {
+    const CommandResult flown = Ed3r(
+        fmt::format("run {} --quiet --out {}", (scratch / "study.yaml").string(), (scratch / name).string()));
+    ASSERT_EQ(flown.status, 0) << flown.err;
+  };
+  fly("before");
+  fly("same");
+  std::string world = ReadAll(scratch / "world.yaml");
+  const std::size_t seed = world.find("\nseed: ");
+  ASSERT_NE(seed, std::string::npos);
+  world.insert(seed + std::string("\nseed: ").size(), "1");
+  std::ofstream(scratch / "world.yaml") << world;
+  fly("after");
+  const auto told = [&](const std::string& name) {
+    return nlohmann::json::parse(Ed3r(fmt::format("compare {} {} --json", (scratch / "before").string(),
+                                                  (scratch / name).string()))
+                                     .out)
+        .at("other_contents");
+  };
+  EXPECT_EQ(told("same"), nlohmann::json::array());
+  EXPECT_EQ(told("after"),
+            (nlohmann::json{"after: world.yaml is not what it is in before: its content differs."}));
+}
+
 TEST_F(CompareTest, ThePaperIsJudgedOnlyWhereEveryRunFlewIt) {
   const std::string both = fmt::format("compare {} {}", Dir("usual"), Dir("small"));
   const CommandResult left_out = Ed3r(both), asked = Ed3r(both + " --claims");

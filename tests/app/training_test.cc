@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
 #include "tests/app/command.h"
@@ -103,6 +104,32 @@ TEST(TrainingTest, EveryNetworkLearnsFromAWarmUpOfItsOwn) {
   };
   EXPECT_EQ(replays("own", 0), 0);   // of the first network
   EXPECT_EQ(replays("own", 55), 0);  // and the second: 28 places in turn
+}
+
+TEST(TrainingTest, NetworksOfOneNameAreExportedIntoFilesOfTheirOwn) {
+  const ScratchFolder scratch;
+  const std::string sweep = (scratch / "epochs.yaml").string(), run = (scratch / "run").string();
+  std::ofstream(sweep) << fmt::format(
+      "name: epochs\nseed: 3\nmissions: 4\n"
+      "set: {{mission.world: {0}/sweeps/worlds/ridges.yaml, training.batch: 32}}\n"
+      "stages:\n"
+      "  - {{name: walk, set: {{strategy: random}}}}\n"
+      "  - {{name: learn, kind: train, after: walk}}\n"
+      "  - name: online\n"
+      "    after: learn\n"
+      "    sweep:\n"
+      "      list:\n"
+      "        - {{name: short, strategy: ablation-1, training.epochs: 1}}\n"
+      "        - {{name: long, strategy: ablation-1, training.epochs: 3}}\n",
+      ED3R_SOURCE_DIR);
+  const CommandResult flown =
+      Ed3r(fmt::format("run {} --quiet --out {} --cache {}", sweep, run, (scratch / "cache").string()));
+  ASSERT_EQ(flown.status, 0) << flown.err;
+  ASSERT_EQ(Ed3r(fmt::format("export {} --networks --out {}", run, (scratch / "out").string())).status, 0);
+  std::set<std::string> contents;
+  for (const auto& file : std::filesystem::directory_iterator(scratch / "out"))
+    contents.insert(ReadAll(file.path()));
+  EXPECT_EQ(contents.size(), 2u);
 }
 
 TEST(TrainingTest, AWarmUpThatIsTooShortForItsNetworksIsRefused) {

@@ -108,6 +108,15 @@ TEST_F(ChecksumTest, WhatIsMissingOrTooMuchIsNamed) {
   ExpectRepairable();
 }
 
+TEST_F(ChecksumTest, AFailureOfAMissionThatIsStoredIsNamed) {
+  Sql(ResultsIn(Run()),
+      "INSERT INTO failures (run, mission, scenario, seed, message) VALUES (2, 3, 5003, 7, 'it flew')");
+  EXPECT_EQ(DamagedIn(Run()),
+            (std::vector<std::string>{
+                "stage online, arm rbs, mission 3: it is said to have failed, and its record is stored"}));
+  ExpectRepairable();
+}
+
 TEST_F(ChecksumTest, AMissionInAnothersPlaceIsNamed) {
   // Both are whole, but each says what the other should say.
   Sql(ResultsIn(Run()),

@@ -51,6 +51,19 @@ TEST(DamageTest, NotADatabase) {
   ExpectRefused(temp / "run", "not a results file (file is not a database)");
 }
 
+TEST(DamageTest, AHeaderThatSqliteDoesNotKnow) {
+  constexpr std::streamoff kSchemaFormat =
+      44;  // in SQLite's header: four bytes, of which formats 1 to 4 are known
+  const TempDir temp;
+  WriteStore(temp / "run", {{0, 0, 0}});
+  {
+    std::fstream file(ResultsIn(temp / "run"), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(kSchemaFormat);
+    file.write("\0\0\0\x40", 4);
+  }
+  ExpectRefused(temp / "run", "the file is damaged (unsupported file format)");
+}
+
 TEST(DamageTest, SomebodyElsesDatabase) {
   const TempDir temp;
   fs::create_directories(temp / "run");

@@ -131,6 +131,23 @@ TEST(FlownNetworksTest, AUseWithoutItsNetworkIsDamage) {
                        "the file is damaged: it does not hold the rc network bbbb"));
 }
 
+// Each is a network that is stored and whole: what has changed is whose it is.
+TEST(FlownNetworksTest, ANetworkOfAnotherArmOrSeedIsDamage) {
+  for (const char* change :
+       {"UPDATE flown_networks SET sha256 = CASE sha256 WHEN 'aaaa' THEN 'bbbb' ELSE 'aaaa' END",
+        "UPDATE flown_networks SET run = 2", "DELETE FROM flown_networks WHERE seed = 1",
+        "DELETE FROM recipe WHERE key = 'networks'"}) {
+    SCOPED_TRACE(change);
+    const TempDir temp;
+    WriteStore(temp / "run", {{2, 1, 0}});
+    ResultStore::Open(temp / "run", TestRecipe(), TestLayout())->PutNetworks(TwoNetworks());
+    Sql(ResultsIn(temp / "run"), change);
+    EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader(temp / "run").Networks(); }), "the file is damaged"));
+    EXPECT_TRUE(Contains(UserErrorOf([&] { ResultStore::Open(temp / "run", TestRecipe(), TestLayout()); }),
+                         "the file is damaged"));
+  }
+}
+
 Recipe WithFiles(bool grid_kept) {
   Recipe recipe = TestRecipe();
   const std::string world = "terrain: {file: data/grid.asc}\n", grid = "ncols 2\n";

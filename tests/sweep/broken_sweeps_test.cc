@@ -44,6 +44,8 @@ constexpr Broken kBroken[] = {
     {"list_is_empty.yaml",
      "list_is_empty.yaml:4:9: list: an empty list is not allowed; allowed: a list of points {name: ..., KEY: "
      "VALUE, ...}"},
+    {"missions_leading_zero.yaml",
+     "missions_leading_zero.yaml:2:11: missions: '010' is not allowed; allowed: 1 .. 10000000"},
     {"missions_missing.yaml",
      "missions_missing.yaml:2:1: missions: is missing in stage 'online'; allowed: 1 .. 10000000"},
     {"missions_not_whole.yaml",

@@ -1,0 +1,67 @@
+// Tables for other tools, of a run that goes on while they are written.
+#include <atomic>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <thread>
+
+#include "studies/export/export_tables.h"
+#include "tests/store/store_fixture.h"
+
+namespace ed3r::exports {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Bytes that the file's header promises: its own, and those of its rows.
+std::int64_t PromisedBytes(const std::string& file) {
+  constexpr std::int64_t kBefore = 12, kNumberBytes = 8, kLetterBytes = 4;
+  const auto header_bytes = static_cast<std::int64_t>(static_cast<std::uint8_t>(file[8]) +
+                                                      256 * static_cast<std::uint8_t>(file[9]));
+  const std::string header = file.substr(kBefore, static_cast<std::size_t>(header_bytes));
+  std::int64_t row = 0;
+  const std::regex field("'<([Uif])([0-9]+)'"), shape("'shape': \\(([0-9]+),\\)");
+  for (auto it = std::sregex_iterator(header.begin(), header.end(), field); it != std::sregex_iterator();
+       ++it)
+    row += (*it)[1] == "U" ? kLetterBytes * std::stoll((*it)[2]) : kNumberBytes;
+  std::smatch rows;
+  EXPECT_TRUE(std::regex_search(header, rows, shape)) << header;
+  return kBefore + header_bytes + row * std::stoll(rows[1]);
+}
+
+std::string Content(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(ExportTest, ARunThatGoesOnIsExportedAsItWasCounted) {
+  const store::TempDir temp;
+  const store::RunLayout layout = store::TestLayout();
+  const auto writer = store::ResultStore::Open(temp / "run", store::TestRecipe(), layout);
+  writer->Commit();
+  std::atomic<bool> ended = false;
+  std::jthread flying(
+      [&] {  // from the end of the plan to its beginning: what comes in stands before what is there
+        std::vector<sweep::RunId> missions = store::AllMissions(layout);
+        for (auto id = missions.rbegin(); id != missions.rend(); ++id) {
+          mission::MissionRecord record = store::TestRecord(*id);
+          record.timesteps = std::ssize(record.steps);
+          writer->Put(*id, record, 0.25);
+          writer->Commit();
+        }
+        ended = true;
+      });
+  for (bool last = false; !last;) {
+    last = ended;
+    store::ResultReader reader(temp / "run");
+    const std::vector<ExportedTable> tables = ExportTables(reader, ExportFormat::kNumpy, temp / "out");
+    EXPECT_EQ(tables.size(), 2u);
+    for (const ExportedTable& table : tables) {
+      const std::string file = Content(table.file);
+      EXPECT_EQ(PromisedBytes(file), std::ssize(file)) << table.file << ", " << table.rows << " rows";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ed3r::exports
