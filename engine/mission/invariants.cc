@@ -22,9 +22,11 @@ bool AddsUp(double expected, double found) {
   return std::abs(expected - found) <= kLedgerTolerance * std::max(std::abs(expected), 1.0);
 }
 
-// Written so that NaN fails.
-void Require(bool holds, Invariant invariant, const std::string& detail) {
-  if (!holds) throw BrokenInvariant(invariant, detail);
+// Written so that NaN fails. The detail is put into words only where it does not hold: several times a timestep it does.
+template <class... Values>
+void Require(bool holds, Invariant invariant, fmt::format_string<const Values&...> detail,
+             const Values&... values) {
+  if (!holds) throw BrokenInvariant(invariant, fmt::format(detail, values...));
 }
 
 bool MayBeNaN(std::string_view name) {
@@ -88,54 +90,50 @@ void CheckTime(const MissionRecord& record) {
   std::int64_t k = 0;
   double duration_s = 0.0;
   for (const TimestepRecord& step : record.steps) {
-    Require(step.k == ++k, Invariant::kTimeMonotone,
-            fmt::format("timestep {} stands in the place of timestep {}", step.k, k));
+    Require(step.k == ++k, Invariant::kTimeMonotone, "timestep {} stands in the place of timestep {}", step.k,
+            k);
     for (const auto& [name, time_s] : TimesOf(step)) {
-      Require(time_s >= 0.0, Invariant::kTimeMonotone,
-              fmt::format("timestep {}: {} is {}", step.k, name, time_s));
+      Require(time_s >= 0.0, Invariant::kTimeMonotone, "timestep {}: {} is {}", step.k, name, time_s);
       duration_s += time_s;
     }
   }
-  Require(record.timesteps == k, Invariant::kTimeMonotone,
-          fmt::format("{} timesteps are said, {} are there", record.timesteps, k));
+  Require(record.timesteps == k, Invariant::kTimeMonotone, "{} timesteps are said, {} are there",
+          record.timesteps, k);
   Require(AddsUp(duration_s, record.duration_s), Invariant::kTimeMonotone,
-          fmt::format("the timesteps take {} s, the mission {} s", duration_s, record.duration_s));
+          "the timesteps take {} s, the mission {} s", duration_s, record.duration_s);
 }
 
 void CheckLedger(const MissionRecord& record, const robot::MovementPower& power, double battery_j) {
   double left_j = battery_j;
   for (const TimestepRecord& step : record.steps) {
     for (const auto& [name, energy_j] : EnergiesOf(step))
-      Require(energy_j >= 0.0, Invariant::kLedgerAddsUp,
-              fmt::format("timestep {}: {} is {}", step.k, name, energy_j));
+      Require(energy_j >= 0.0, Invariant::kLedgerAddsUp, "timestep {}: {} is {}", step.k, name, energy_j);
     const double hovering_s = step.turning_s + step.sensing_s + step.computing_s + step.transmitting_s;
     const double expected_j = power.hover_w * hovering_s + power.horizontal_w * step.horizontal_s +
                               power.ascent_w * step.ascent_s + power.descent_w * step.descent_s +
                               step.sensing_j + step.computation_j + step.transmission_j;
-    Require(AddsUp(expected_j, step.total_j), Invariant::kLedgerAddsUp,
-            fmt::format("timestep {}: parts {} J, total {} J", step.k, expected_j, step.total_j));
+    Require(AddsUp(expected_j, step.total_j), Invariant::kLedgerAddsUp, "timestep {}: parts {} J, total {} J",
+            step.k, expected_j, step.total_j);
     left_j -= step.total_j;
     Require(std::abs(left_j - step.battery_j) <= kLedgerTolerance * battery_j, Invariant::kLedgerAddsUp,
-            fmt::format("timestep {}: the battery holds {} J, the ledger leaves {} J", step.k, step.battery_j,
-                        left_j));
+            "timestep {}: the battery holds {} J, the ledger leaves {} J", step.k, step.battery_j, left_j);
   }
-  Require(
-      std::abs(left_j - record.battery_left_j) <= kLedgerTolerance * battery_j, Invariant::kLedgerAddsUp,
-      fmt::format("mission: the battery holds {} J, the ledger leaves {} J", record.battery_left_j, left_j));
+  Require(std::abs(left_j - record.battery_left_j) <= kLedgerTolerance * battery_j, Invariant::kLedgerAddsUp,
+          "mission: the battery holds {} J, the ledger leaves {} J", record.battery_left_j, left_j);
   const double parts_j = record.movement_j + record.sensing_j + record.computation_j + record.transmission_j;
-  Require(AddsUp(parts_j, record.total_j), Invariant::kLedgerAddsUp,
-          fmt::format("mission: parts {} J, total {} J", parts_j, record.total_j));
+  Require(AddsUp(parts_j, record.total_j), Invariant::kLedgerAddsUp, "mission: parts {} J, total {} J",
+          parts_j, record.total_j);
   const double given_j = battery_j - record.battery_left_j;
-  Require(AddsUp(given_j, record.total_j), Invariant::kLedgerAddsUp,
-          fmt::format("battery gave {} J, ledger says {} J", given_j, record.total_j));
+  Require(AddsUp(given_j, record.total_j), Invariant::kLedgerAddsUp, "battery gave {} J, ledger says {} J",
+          given_j, record.total_j);
 }
 
 void CheckBattery(const MissionRecord& record) {
   for (const TimestepRecord& step : record.steps)
-    Require(step.battery_j >= 0.0, Invariant::kBatteryNotNegative,
-            fmt::format("timestep {}: {} J are left", step.k, step.battery_j));
-  Require(record.battery_left_j >= 0.0, Invariant::kBatteryNotNegative,
-          fmt::format("mission: {} J are left", record.battery_left_j));
+    Require(step.battery_j >= 0.0, Invariant::kBatteryNotNegative, "timestep {}: {} J are left", step.k,
+            step.battery_j);
+  Require(record.battery_left_j >= 0.0, Invariant::kBatteryNotNegative, "mission: {} J are left",
+          record.battery_left_j);
 }
 
 void CheckPositions(const MissionRecord& record, const world::Scene& scene, double gust_mps) {
@@ -147,7 +145,7 @@ void CheckPositions(const MissionRecord& record, const world::Scene& scene, doub
          {std::tuple{"x_m", x_m, 0.0, size_m.x()}, std::tuple{"y_m", y_m, 0.0, size_m.y()},
           std::tuple{"z_m", z_m, ground_m, size_m.z()}})
       Require(at >= low - tolerance_m && at <= high + tolerance_m, Invariant::kPositionInWorld,
-              fmt::format("timestep {}: {} is {}; the world holds {} .. {}", k, name, at, low, high));
+              "timestep {}: {} is {}; the world holds {} .. {}", k, name, at, low, high);
   };
   check(0, record.start_x_m, record.start_y_m, record.start_z_m);
   for (const TimestepRecord& step : record.steps) check(step.k, step.x_m, step.y_m, step.z_m);
@@ -161,7 +159,7 @@ void CheckProbabilities(const MissionRecord& record) {
           std::pair{"fire_share", step.fire_share}, std::pair{"smoke_share", step.smoke_share},
           std::pair{"epsilon", step.epsilon}})
       Require(value >= -kProbabilityTolerance && value <= 1.0 + kProbabilityTolerance,
-              Invariant::kProbabilityInRange, fmt::format("timestep {}: {} is {}", step.k, name, value));
+              Invariant::kProbabilityInRange, "timestep {}: {} is {}", step.k, name, value);
 }
 
 }  // namespace ed3r::mission

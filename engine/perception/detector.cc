@@ -1,12 +1,17 @@
 #include "engine/perception/detector.h"
 
 #include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
-#include <vector>
 
 #include "engine/core/random.h"
 
 namespace ed3r::perception {
+namespace {
+
+constexpr std::size_t kUsualFrames = 64;  // more are kept on the heap; a sensing period has 33 by default
+
+}  // namespace
 
 Score DetectFromProfile(const View& view, const PerceptionConfig& perception, DetectionModel model,
                         int frames, const LookDraws& draws) {
@@ -19,10 +24,10 @@ Score DetectFromProfile(const View& view, const PerceptionConfig& perception, De
   const double logit =
       response.slope * std::log10(signal / response.half_signal) + response.view_sigma * fluctuation;
   Stream stream(draws.seed, draws.scenario, Purpose::kFrames, draws.timestep);
-  std::vector<double> confidences(static_cast<std::size_t>(frames));
+  boost::container::small_vector<double, kUsualFrames> confidences(static_cast<std::size_t>(frames));
   for (double& confidence : confidences)
     confidence = response.ceiling / (1.0 + std::exp(-(logit + response.frame_sigma * stream.Normal())));
-  return StableConfidence(confidences, perception.frame_threshold);
+  return StableConfidence({confidences.data(), confidences.size()}, perception.frame_threshold);
 }
 
 }  // namespace ed3r::perception

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -122,8 +124,13 @@ struct StaticGeometry::Impl {
         scene(MakeScene(device.get(), mesh)),
         bullet_mesh(static_cast<int>(mesh.triangles.size()), mesh.triangles.data()->data(),
                     sizeof(Eigen::Vector3i), static_cast<int>(mesh.vertices_m.size()),
-                    mesh.vertices_m.data()->data(), sizeof(Eigen::Vector3f)),
-        shape(&bullet_mesh, /*useQuantizedAabbCompression=*/true) {}
+                    mesh.vertices_m.data()->data(), sizeof(Eigen::Vector3f)) {}
+
+  // Bullet's tree takes a third of a world's loading, and only flights ask for it: it is made once, by the first thread that does.
+  btBvhTriangleMeshShape& Shape() {
+    std::call_once(shape_made, [this] { shape.emplace(&bullet_mesh, /*useQuantizedAabbCompression=*/true); });
+    return *shape;
+  }
 
   // Embree reads vertices in blocks of 16 bytes: the last one needs memory behind it.
   static TriangleMesh PadForEmbree(TriangleMesh m) {
@@ -153,7 +160,8 @@ struct StaticGeometry::Impl {
   DevicePtr device;
   ScenePtr scene;
   btTriangleIndexVertexArray bullet_mesh;
-  btBvhTriangleMeshShape shape;
+  std::once_flag shape_made;
+  std::optional<btBvhTriangleMeshShape> shape;
 };
 
 StaticGeometry::StaticGeometry(TriangleMesh mesh) : impl_(std::make_unique<Impl>(std::move(mesh))) {}
@@ -242,12 +250,12 @@ bool StaticGeometry::Clear(const Eigen::Vector3d& centre_m, double half_side_m) 
   } any;
   const Eigen::Vector3f low = (centre_m.array() - half_side_m).cast<float>();
   const Eigen::Vector3f high = (centre_m.array() + half_side_m).cast<float>();
-  impl_->shape.processAllTriangles(&any, btVector3(low.x(), low.y(), low.z()),
-                                   btVector3(high.x(), high.y(), high.z()));
+  impl_->Shape().processAllTriangles(&any, btVector3(low.x(), low.y(), low.z()),
+                                     btVector3(high.x(), high.y(), high.z()));
   return !any.found;
 }
 
-btCollisionShape* StaticGeometry::Shape() const { return &impl_->shape; }
+btCollisionShape* StaticGeometry::Shape() const { return &impl_->Shape(); }
 
 const TriangleMesh& StaticGeometry::Mesh() const { return impl_->mesh; }
 

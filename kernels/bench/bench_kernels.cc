@@ -1,4 +1,6 @@
-// bench_kernels [--rounds N] [rc] [robot] [train]
+// bench_kernels [--rounds N] [rc] [robot] [train] [growth]
+//
+// growth, only where it is named: the RC's decision among ever more candidates.
 //
 // Measures the hand-written kernels at the level in use (ED3R_SIMD) against the FMA peak of the core and
 // against other libraries, paired in one run on one core. "ratio" is the time over ours; results are compared
@@ -175,6 +177,30 @@ void MeasureTraining(int rounds) {
   PrintSkipped(missing);
 }
 
+void MeasureGrowth(int rounds) {
+  const kernels::SimdLevel level = kernels::ActiveSimdLevel();
+  const int sizes[] = {13, 128, 64, 64, 32, 1}, states = 8;
+  const kernels::DenseShape shape = kernels::MakeDenseShape(sizes, 6);
+  std::mt19937 rng(3);
+  const std::vector<float> flat = RandomParameters(shape, &rng);
+  kernels::AlignedFloats packed(kernels::PackedFloats(shape)), workspace(kernels::RfnnWorkspaceFloats(shape));
+  kernels::PackParameters(shape, flat.data(), packed.data());
+  const kernels::DenseNet net{shape, packed.data()};
+  std::printf("\nRC decision among ever more candidates\n");
+  for (const int n : {100, 316, 1000, 3162, 10000, 31623, 100000}) {
+    const std::vector<float> state = Normal(states, 1.0, &rng),
+                             actions = Normal(n * (shape.inputs() - states), 1.0, &rng);
+    const kernels::RfnnDecision decision{state.data(), states, actions.data(), n};
+    const std::vector<Contender> contenders = {
+        {"hand", [&] { kernels::RfnnArgmax(net, decision, workspace.data(), level); },
+         DecisionFlops(shape, states, n)},
+        FmaPeak(level)};
+    const Timing timing = RunPaired(contenders, rounds, kSampleSeconds).front();
+    std::printf("  %6d candidates %10.2f us %8.2f ns each %8.2f of peak\n", n, timing.us, 1e3 * timing.us / n,
+                timing.of_peak);
+  }
+}
+
 int Main(int argc, char** argv) {
   int rounds = 201;
   std::vector<std::string> wanted;
@@ -196,6 +222,7 @@ int Main(int argc, char** argv) {
   if (is_wanted("robot"))
     MeasureDecision({"Robot decision: 11-128-64-32-1, 3 actions", {11, 128, 64, 32, 1}, 9, 3}, rounds);
   if (is_wanted("train")) MeasureTraining(rounds);
+  if (!wanted.empty() && is_wanted("growth")) MeasureGrowth(rounds);
   return 0;
 }
 
