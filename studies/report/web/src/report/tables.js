@@ -146,7 +146,9 @@ function variants(model) {
       "p",
       { class: "key" },
       "Each variant minus the first, paired by scenario, with 95 % intervals; bold where the interval does not hold 0." +
-        (model.data.compared ? "" : " Pictures and other tables on this page are of one variant, which the first lines name."),
+        (model.data.compared
+          ? ""
+          : " Pictures and other tables on this page are of one variant, which the first lines name."),
     ),
     sortedTable(
       [
@@ -195,22 +197,12 @@ export function figuresForPapers(model) {
         el(
           "li",
           {},
-          el(
-            "details",
-            {},
-            el(
-              "summary",
-              {},
-              figure.title,
-              !run.figures_note && [
-                " ",
-                el("a", { href: `figures/${figure.id}.svg` }, "svg"),
-                " ",
-                el("a", { href: `figures/${figure.id}.png` }, "png"),
-              ],
-            ),
-            el("p", {}, figure.caption),
-          ),
+          el("details", {}, el("summary", {}, figure.title), el("p", {}, figure.caption)),
+          !run.figures_note && [
+            el("a", { href: `figures/${figure.id}.svg` }, "svg"),
+            " ",
+            el("a", { href: `figures/${figure.id}.png` }, "png"),
+          ],
         ),
       ),
     ),
