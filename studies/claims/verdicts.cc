@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "studies/claims/construction.h"
 #include "studies/claims/equivalence.h"
 #include "studies/claims/evidence.h"
 #include "studies/claims/luck.h"
@@ -356,13 +357,15 @@ int CountDistinct(const ClaimStudy& study) {
   return CountDistinctIf(study, [](const JudgedClaim&) { return true; });
 }
 
+bool HoldsByConstruction(const JudgedClaim& judged) {
+  const paper::Claim& claim = judged.claim;
+  const bool built = claim.kind == "setup" || claim.source == "construction" ||
+                     (claim.kind == "value" && !paper::PaperValueOf(claim));
+  return built && judged.all.verdict == Verdict::kReproduced;
+}
+
 int CountReproducedByConstruction(const ClaimStudy& study) {
-  return CountDistinctIf(study, [](const JudgedClaim& judged) {
-    const paper::Claim& claim = judged.claim;
-    const bool built = claim.kind == "setup" || claim.source == "construction" ||
-                       (claim.kind == "value" && !paper::PaperValueOf(claim));
-    return built && judged.all.verdict == Verdict::kReproduced;
-  });
+  return CountDistinctIf(study, HoldsByConstruction);
 }
 
 int CountCalibrated(const ClaimStudy& study) {

@@ -19,6 +19,12 @@ using Arms = std::vector<const metrics::ArmMetrics*>;
 double Success(const metrics::ArmMetrics& arm) { return arm["msr_pct"].value; }
 double Energy(const metrics::ArmMetrics& arm) { return arm["total_energy_kj"].value; }
 
+// With a minus sign as in the page's tables.
+std::string Number(double value, int decimals) {
+  const std::string text = fmt::format("{:.{}f}", value, decimals);
+  return text.starts_with('-') ? "−" + text.substr(1) : text;
+}
+
 std::string WithInterval(const metrics::MetricValue& value, int decimals, const char* unit) {
   if (std::isnan(value.lo)) return fmt::format("{:.{}f} {}", value.value, decimals, unit);
   return fmt::format("{:.{}f} {} ({:.{}f}–{:.{}f})", value.value, decimals, unit, value.lo, decimals,
@@ -50,18 +56,26 @@ struct Difference {
   double p = std::numeric_limits<double>::quiet_NaN();  // after Holm's correction; NaN: not tested
   const char* unit = "";
   bool one_network = false;
+  int family = 0;  // of how many p values the correction was
 };
 
 constexpr double kLevel = 0.05;
 
-// "11.4 points more success (4.7 to 18.2; p = 0.074, not significant)".
+// An interval clear of 0 beside a p that is not below the level: the interval is of this comparison alone, the p is corrected.
+std::string Significance(const Difference& d) {
+  const std::string p = d.p < 0.001 ? "p < 0.001" : fmt::format("p = {:.3f}", d.p);
+  if (d.p < kLevel) return p + ", significant";
+  if (d.lo <= 0 && d.hi >= 0) return p + ", not significant";
+  return fmt::format("clear of 0 taken alone, but not significant among all {} compared: {}", d.family, p);
+}
+
+// "11.4 points more success (4.7 to 18.2; clear of 0 taken alone, but not significant among all 45 compared: p = 0.074)".
 std::string Tells(const Difference& d, const char* of) {
   const bool less = d.value < 0;
   std::string text = fmt::format("{:.1f} {} {} {}", std::abs(d.value), d.unit, less ? "less" : "more", of);
   if (std::isnan(d.p)) return text + " (not tested)";
-  return text + fmt::format(" ({:.1f} to {:.1f}; p {}{}, {}{})", less ? -d.hi : d.lo, less ? -d.lo : d.hi,
-                            d.p < 0.001 ? "" : "= ", d.p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", d.p),
-                            d.p < kLevel ? "significant" : "not significant",
+  return text + fmt::format(" ({} to {}; {}{})", Number(less ? -d.hi : d.lo, 1),
+                            Number(less ? -d.lo : d.hi, 1), Significance(d),
                             d.one_network ? ", the luck of training not counted: one network" : "");
 }
 
@@ -75,26 +89,36 @@ std::optional<Difference> Claimed(const claims::ClaimStudy& study, const std::st
     const claims::Judgement& all = judged.all;
     if (judged.claim.comparison != comparison || judged.claim.metric != metric || std::isnan(all.p_holm))
       continue;
-    Difference d{
-        all.ours,          all.lo, all.hi, std::min(all.p_holm, all.p_against_holm), energy ? "%" : "points",
-        study.networks < 2};
+    Difference d{.value = all.ours,
+                 .lo = all.lo,
+                 .hi = all.hi,
+                 .p = std::min(all.p_holm, all.p_against_holm),
+                 .unit = energy ? "%" : "points",
+                 .one_network = study.networks < 2,
+                 .family = study.family};
     if (energy) d.value = -all.ours, d.lo = -all.hi, d.hi = -all.lo;
     return d;
   }
   return std::nullopt;
 }
 
+int Tested(const std::vector<variants::ArmDifference>& differences) {
+  return static_cast<int>(std::count_if(differences.begin(), differences.end(),
+                                        [](const auto& d) { return !std::isnan(d.p_holm); }));
+}
+
 // Of these comparisons, whichever way round they have the two arms.
 std::optional<Difference> Compared(const std::vector<variants::ArmDifference>& differences,
                                    const std::string& subject, const std::string& rival,
                                    std::string_view metric) {
+  const int family = Tested(differences);
   for (const variants::ArmDifference& d : differences) {
     if (d.metric != metric) continue;
     const char* unit = metric == "total_energy_kj" ? "kJ" : "points";
     if (d.arm == subject && d.minus == rival)
-      return Difference{d.difference, d.lo, d.hi, d.p_holm, unit, d.OneNetwork()};
+      return Difference{d.difference, d.lo, d.hi, d.p_holm, unit, d.OneNetwork(), family};
     if (d.arm == rival && d.minus == subject)
-      return Difference{-d.difference, -d.hi, -d.lo, d.p_holm, unit, d.OneNetwork()};
+      return Difference{-d.difference, -d.hi, -d.lo, d.p_holm, unit, d.OneNetwork(), family};
   }
   return std::nullopt;
 }
@@ -118,9 +142,9 @@ std::string Against(const Report& report, const std::vector<variants::ArmDiffere
   if (parts.empty())
     return theirs + "; the two flew no scenarios in common, so nothing is said of their difference.";
   return fmt::format(
-      "{}: in the same scenarios {} has {} (95 % intervals; p after Holm's correction for all {}).", theirs,
-      tables::ArmLabel(subject.name), fmt::join(parts, " and "),
-      of_claims ? "claims" : "comparisons of arms");
+      "{}: in the same scenarios {} has {} (95 % intervals; p after Holm's correction for all {} {}).",
+      theirs, tables::ArmLabel(subject.name), fmt::join(parts, " and "),
+      of_claims ? report.claims.family : Tested(differences), of_claims ? "claims" : "comparisons of arms");
 }
 
 // "A, B and C".
@@ -164,9 +188,11 @@ std::string Best(const metrics::ArmMetrics& subject, const Arms& arms,
   add(*frugal, "total_energy_kj", "energy");
   add(*successful, "msr_pct", "success");
   if (parts.empty()) return text + '.';
-  return text + fmt::format("; beside {} that is {} (p after Holm's correction for all arms beside {}).",
-                            tables::ArmLabel(subject.name), fmt::join(parts, " and "),
-                            tables::ArmLabel(subject.name));
+  return text + fmt::format(
+                    "; beside {} that is {} (p after Holm's correction for all {} comparisons of arms "
+                    "with {}).",
+                    tables::ArmLabel(subject.name), fmt::join(parts, " and "), Tested(differences),
+                    tables::ArmLabel(subject.name));
 }
 
 std::string Claims(const claims::ClaimStudy& study) {
@@ -201,18 +227,27 @@ const metrics::ArmMetrics* Rival(const Report& report, const Arms& arms, const m
 
 }  // namespace
 
+const metrics::ArmMetrics* StudiedArm(const Report& report, const std::vector<bool>& warmups) {
+  ED3R_CHECK(warmups.size() == report.told.size(), "warm-up or not, of every arm");
+  Arms arms;
+  for (std::size_t a = 0; a < report.told.size(); ++a)
+    if (!warmups[a] && report.told[a].missions > 0) arms.push_back(&report.told[a]);
+  if (arms.empty()) return nullptr;
+  const metrics::ArmMetrics* studied = Named(arms, "ed3r-75");
+  return studied != nullptr ? studied : Extreme(arms, Success, 1);
+}
+
 std::vector<std::string> AnswerSentences(const Report& report, const std::vector<bool>& warmups,
                                          std::span<const metrics::ArmData> missions) {
   ED3R_CHECK(warmups.size() == report.told.size(), "warm-up or not, of every arm");
   ED3R_CHECK(missions.size() == report.told.size(), "missions of every arm");
+  const metrics::ArmMetrics* subject = StudiedArm(report, warmups);
+  if (subject == nullptr) return {};
   Arms arms;
   std::vector<metrics::ArmData> flown;
   for (std::size_t a = 0; a < report.told.size(); ++a)
     if (!warmups[a] && report.told[a].missions > 0)
       arms.push_back(&report.told[a]), flown.push_back(missions[a]);
-  if (arms.empty()) return {};
-  const metrics::ArmMetrics* subject = Named(arms, "ed3r-75");
-  if (subject == nullptr) subject = Extreme(arms, Success, 1);
   std::vector<std::string> sentences;
   if (const std::string note = VariantNote(report); !note.empty()) sentences.push_back(note);
   sentences.push_back(tables::ArmLabel(subject->name) + ' ' + Tells(*subject) + '.');

@@ -10,9 +10,11 @@
 #include "engine/core/check.h"
 #include "engine/store/reader.h"
 #include "engine/sweep/arm_id.h"
+#include "studies/claims/construction.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/paper/claims.h"
 #include "studies/report/page_answer.h"
+#include "studies/report/page_arms.h"
 #include "studies/report/page_parts.h"
 #include "studies/report/page_slices.h"
 #include "studies/tables/data_files.h"
@@ -57,6 +59,8 @@ Json ArmJson(const PageDataInputs& inputs, std::size_t a) {
   for (const char* key : {"key", "stage", "name", "label", "warmup", "strategy", "eta_min_pct", "missions",
                           "failed", "missing", "networks", "convergence", "world"})
     json[key] = drawn.at(key);
+  const Json& strategy = json["strategy"];
+  json["about"] = strategy.is_string() ? std::string(AboutStrategy(strategy.get<std::string>())) : "";
   json["stored_name"] = metrics.stage + '/' + sweep::ArmId{metrics.name, inputs.missions.variant}.Text();
   json["paper"] = Json::object();
   for (std::size_t m = 0; m < metrics.values.size(); ++m)
@@ -85,6 +89,7 @@ Json ClaimJson(const claims::JudgedClaim& judged) {
                {"told", claims::NameWithLuck(judged)},
                {"repeats", judged.repeats},
                {"why", all.why}};
+  if (claims::HoldsByConstruction(judged)) json["built"] = true;
   if (claims::PointsTheOtherWay(judged)) json["other_way"] = true;
   if (claims::ComparesP85(judged)) json["p85"] = true;
   if (const auto [same, measured] = claims::AgreeingNetworks(judged); measured > 0)
@@ -212,6 +217,8 @@ Json MakePageData(const PageDataInputs& inputs) {
       {"metrics", MetricsJson()},    {"arms", Json::array()}};
   data["departures"] = report.DepartureNotes();
   for (std::size_t a = 0; a < report.told.size(); ++a) data["arms"].push_back(ArmJson(inputs, a));
+  const metrics::ArmMetrics* studied = StudiedArm(report, warmups);
+  data["studied"] = studied == nullptr ? Json(nullptr) : Json(studied - report.told.data());
   data["slices"] = SlicesJson(inputs.missions.arms, report.told);
   data["histograms"] = HistogramsJson(inputs.missions.arms);
   data["points"] = PointsJson(inputs.missions.arms, inputs.missions.numbers);

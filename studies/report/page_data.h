@@ -35,7 +35,7 @@ struct PageDataInputs {
   std::string viewers_note = {};  // why there are none, though they were wanted
 };
 
-// {"format", "name", "question", "answer": [sentences], "departures": [sentences], "metrics", "arms", "slices", "histograms", "points", "failures",
+// {"format", "name", "question", "answer": [sentences], "departures": [sentences], "metrics", "arms", "studied" (arm), "slices", "histograms", "points", "failures",
 // "known_sites", "broken", "claims", "differences", "tables", "world", "missions_shown", "variants", "figures", "run": provenance for people,
 // "viewers", "viewers_note"}; parts as in page_slices.h and figure_data.h. Pure.
 nlohmann::ordered_json MakePageData(const PageDataInputs& inputs);

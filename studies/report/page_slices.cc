@@ -102,6 +102,37 @@ const char* CauseOf(const mission::MissionRecord& mission) {
                                          : "battery empty, some reliable looks but never enough in a row";
 }
 
+// Missions of an arm that failed from the same cause.
+class FailureGroup {
+ public:
+  void Add(int number, const mission::MissionRecord& mission, bool list_each_site) {
+    ++count_;
+    known_ += mission.site_known != 0;
+    const std::size_t there = static_cast<std::size_t>(++sites_[mission.site]);
+    if (missions_.size() >= kMostFailuresListed && !(list_each_site && there <= kFailuresListedPerSite))
+      return;
+    missions_.push_back({number, mission.site, figures::Rounded(EnergyKj(mission), 2),
+                         figures::Rounded(DurationMin(mission), 2), mission.timesteps,
+                         mission.reliable_timesteps});
+  }
+  Json ToJson(std::size_t arm, const std::string& cause, std::int64_t outcome) && {
+    Json sites = Json::object();
+    for (const auto& [site, count] : sites_) sites[std::to_string(site)] = count;
+    return {{"arm", arm},
+            {"cause", cause},
+            {"outcome", outcome},
+            {"count", count_},
+            {"known", known_},
+            {"sites", std::move(sites)},
+            {"missions", std::move(missions_)}};
+  }
+
+ private:
+  int count_ = 0, known_ = 0;
+  std::map<std::int64_t, int> sites_;
+  Json missions_ = Json::array();
+};
+
 }  // namespace
 
 Json SlicesJson(std::span<const metrics::ArmData> arms, std::span<const metrics::ArmMetrics> metrics) {
@@ -181,26 +212,18 @@ Json PointsJson(std::span<const metrics::ArmData> arms, std::span<const std::vec
 }
 
 Json FailuresJson(std::span<const metrics::ArmData> arms, std::span<const std::vector<int>> numbers) {
+  const bool list_each_site = SitesOf(arms).size() <= kMostSites;
   Json groups = Json::array();
   for (std::size_t a = 0; a < arms.size(); ++a) {
     ED3R_CHECK(numbers[a].size() == arms[a].missions.size(), "a number for every mission");
-    std::map<std::string, Json> by_cause;
+    std::map<std::pair<std::string, std::int64_t>, FailureGroup> by_cause;
     for (std::size_t i = 0; i < arms[a].missions.size(); ++i) {
       const mission::MissionRecord& mission = arms[a].missions[i];
       if (mission.outcome == static_cast<std::int64_t>(mission::Outcome::kSuccess)) continue;
-      Json& group = by_cause[CauseOf(mission)];
-      if (group.is_null())
-        group = {{"arm", a},
-                 {"cause", CauseOf(mission)},
-                 {"outcome", mission.outcome},
-                 {"count", 0},
-                 {"missions", Json::array()}};
-      group["count"] = group["count"].get<int>() + 1;
-      if (group["missions"].size() < kMostFailuresListed)
-        group["missions"].push_back({numbers[a][i], mission.site, figures::Rounded(EnergyKj(mission), 2),
-                                     figures::Rounded(DurationMin(mission), 2)});
+      by_cause[{CauseOf(mission), mission.outcome}].Add(numbers[a][i], mission, list_each_site);
     }
-    for (auto& [cause, group] : by_cause) groups.push_back(std::move(group));
+    for (auto& [cause, group] : by_cause)
+      groups.push_back(std::move(group).ToJson(a, cause.first, cause.second));
   }
   return groups;
 }

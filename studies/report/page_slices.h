@@ -36,11 +36,13 @@ nlohmann::ordered_json PointsJson(std::span<const metrics::ArmData> arms,
 
 inline constexpr int kMostPoints = 1500;
 
-// [{"arm", "cause", "outcome", "count", "missions": [[number, site, energy_kj, duration_min]...]}]: missions that did not
-// succeed, by arm and by what went wrong; of each the first kMostFailuresListed.
+// [{"arm", "cause", "outcome", "count", "known", "sites": {site: count}, "missions": [[number, site, energy_kj,
+// duration_min, timesteps, reliable_timesteps]...]}]: missions that did not succeed, by arm and by what went wrong, all of
+// them counted, at each site and at those known to the warm-up. Listed are the first kMostFailuresListed, and of each site,
+// where there are at most kMostSites, the first kFailuresListedPerSite.
 nlohmann::ordered_json FailuresJson(std::span<const metrics::ArmData> arms,
                                     std::span<const std::vector<int>> numbers);
 
-inline constexpr std::size_t kMostFailuresListed = 60;
+inline constexpr std::size_t kMostFailuresListed = 60, kFailuresListedPerSite = 5;
 
 }  // namespace ed3r::report

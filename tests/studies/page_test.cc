@@ -1,7 +1,9 @@
 // The data of the interactive page: filters, counts, sentences.
 #include <gtest/gtest.h>
 
+#include "engine/agents/strategy.h"
 #include "studies/report/page_answer.h"
+#include "studies/report/page_arms.h"
 #include "studies/report/page_slices.h"
 #include "studies/report/report.h"
 #include "studies/report/web_page.h"
@@ -86,6 +88,35 @@ TEST(PageSlicesTest, FailuresAreListedByCauseWithTheirNumbers) {
   EXPECT_EQ(found, 2);
 }
 
+// More failures than are listed, most at one site; those at the other come after the list is full.
+TEST(PageSlicesTest, FailuresAreCountedAtEachSiteThoughFewAreListed) {
+  constexpr int kAtThree = 70, kAtEight = 8;
+  metrics::ArmData arm{.stage = "online", .name = "rbs", .missions = {}};
+  std::vector<std::vector<int>> numbers(1);
+  for (int i = 0; i < kAtThree + kAtEight; ++i) {
+    mission::MissionRecord& m =
+        arm.missions.emplace_back(FlownMission(mission::Outcome::kFalsePositive, 0, 7, 0, 60));
+    Detect(m, 2, 1.6, 0);
+    m.site = i < kAtThree ? 3 : 8;
+    m.site_known = i < kAtThree;
+    numbers[0].push_back(i);
+  }
+  const auto groups = report::FailuresJson({&arm, 1}, numbers);
+  ASSERT_EQ(groups.size(), 1u);
+  const auto& group = groups[0];
+  EXPECT_EQ(group.at("count"), kAtThree + kAtEight);
+  EXPECT_EQ(group.at("known"), kAtThree);
+  EXPECT_EQ(group.at("sites").at("3"), kAtThree);
+  EXPECT_EQ(group.at("sites").at("8"), kAtEight);
+  EXPECT_EQ(group.at("sites").size(), 2u);
+  const auto& missions = group.at("missions");
+  ASSERT_EQ(missions.size(), report::kMostFailuresListed + report::kFailuresListedPerSite);
+  EXPECT_EQ(missions.at(report::kMostFailuresListed).at(0), kAtThree);
+  EXPECT_EQ(missions.at(report::kMostFailuresListed).at(1), 8);
+  EXPECT_EQ(missions.at(0).at(4), 7) << "timesteps";
+  EXPECT_EQ(missions.at(0).at(5), 2) << "reliable ones";
+}
+
 // Nine arms of 10,000 missions at 14 sites: what grows with missions is bounded.
 TEST(PageSlicesTest, TheDataStaySmallForManyMissions) {
   constexpr int kMissions = 10000, kArms = 9, kSites = 14;
@@ -138,7 +169,17 @@ TEST(PageAnswerTest, TellsTheStudiedArmBesideItsRival) {
       sentences[1].find(", not significant) and 10.0 kJ less energy (10.0 to 10.0; p < 0.001, significant)"),
       std::string::npos)
       << sentences[1];
-  EXPECT_NE(sentences[1].find("correction for all comparisons of arms"), std::string::npos) << sentences[1];
+  EXPECT_NE(sentences[1].find("correction for all 3 comparisons of arms"), std::string::npos) << sentences[1];
+}
+
+// Alone the interval is clear of 0; six arms more, each compared in three metrics, raise the corrected p.
+TEST(PageAnswerTest, SaysWhyAnIntervalClearOfZeroIsNotSignificant) {
+  std::vector<metrics::ArmData> arms = {TwelveMissions("mine", 10, 12), TwelveMissions("rbs", 20, 6)};
+  for (const char* name : {"a", "b", "c", "d", "e", "f"}) arms.push_back(TwelveMissions(name, 20, 6));
+  const std::string told = Answer(arms, std::vector<bool>(arms.size(), false)).at(1);
+  EXPECT_NE(told.find("50.0 points more success ("), std::string::npos) << told;
+  EXPECT_NE(told.find("; clear of 0 taken alone, but not significant among all "), std::string::npos) << told;
+  EXPECT_EQ(told.find(", not significant"), std::string::npos) << told;
 }
 
 TEST(PageAnswerTest, NamesTheArmOfTheBestMeans) {
@@ -170,6 +211,12 @@ TEST(PageAnswerTest, SaysNothingOfArmsInOtherScenarios) {
 TEST(PageAnswerTest, WarmUpsAreNoAnswer) {
   EXPECT_TRUE(Answer({FiveMissions()}, {true}).empty());
   EXPECT_TRUE(Answer({}, {}).empty());
+}
+
+TEST(PageArmsTest, EveryStrategyIsTold) {
+  for (const agents::Strategy& strategy : agents::Strategies())
+    EXPECT_FALSE(report::AboutStrategy(strategy.name).empty()) << strategy.name;
+  EXPECT_TRUE(report::AboutStrategy("mine").empty());
 }
 
 TEST(WebPageTest, NoTextEndsTheElementThatHoldsIt) {

@@ -11,7 +11,8 @@ test("numbers are printed as the text tables do", () => {
   assert.equal(number(0.0253, 3), "0.025");
   assert.equal(number(-1.5, 1), "−1.5");
   assert.equal(number(null), "–");
-  assert.equal(number(12345.6, 2), "12346");
+  assert.equal(number(12345.6, 2), "12,346");
+  assert.equal(number(-1234567, 2), "−1,234,567");
 });
 
 test("an interval is none where an end is", () => {

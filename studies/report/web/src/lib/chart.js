@@ -9,15 +9,16 @@ export function figure(id, title, caption) {
   const picture = el("div", { class: "picture" });
   const behind = el("div");
   const told = el("figcaption", {}, caption);
+  const heading = el("h3", { id: `${id}-title` }, title);
   const node = el(
     "figure",
     { id, "aria-labelledby": `${id}-title` },
-    el("div", { class: "figure-head" }, el("h3", { id: `${id}-title` }, title), controls),
+    el("div", { class: "figure-head" }, heading, controls),
     picture,
     told,
     behind,
   );
-  return { node, picture, controls, behind, told };
+  return { node, picture, controls, behind, told, heading };
 }
 
 /** {root, inner, width, height} of the plotting area. */
@@ -37,15 +38,37 @@ export function canvas(place, { height, label, margin }) {
   };
 }
 
-/** Axes at the left and below, with what they count. */
+/** 1, 2 and 5 times powers of ten within a logarithmic scale, and its ends where there is room for them. */
+export function logTicks(scale, gap_px = 26) {
+  const [low, high] = scale.domain();
+  const round = [];
+  for (let power = Math.floor(Math.log10(low)); power <= Math.ceil(Math.log10(high)); ++power)
+    for (const step of [1, 2, 5]) {
+      const value = Number((step * 10 ** power).toPrecision(1));
+      if (value >= low && value <= high) round.push(value);
+    }
+  return withEnds(round, scale, gap_px);
+}
+
+/** Round ticks with the ends of the scale; of two that are too near to one another the end is kept. */
+export function withEnds(ticks, scale, gap_px = 26) {
+  const ends = scale.domain();
+  const free = ticks.filter((tick) => ends.every((end) => Math.abs(scale(tick) - scale(end)) >= gap_px));
+  return [ends[0], ...free, ends[1]];
+}
+
+const ticked = (axis, count, values, format) =>
+  values ? axis.tickValues(values).tickFormat(format) : axis.ticks(count, format);
+
+/** Axes at the left and below, with what they count. `ticks`: a count and a format of each axis, or the values themselves. */
 export function axes(ground, x, y, labels, ticks = {}) {
   const { inner, width, height } = ground;
   if (x) {
     const axis = svg("g", { class: "axis", transform: `translate(0,${height})`, "aria-hidden": "true" });
     select(axis).call(
-      axisBottom(x)
-        .ticks(ticks.x ?? Math.max(3, width / 90), ticks.xFormat)
-        .tickSizeOuter(0),
+      ticked(axisBottom(x), ticks.x ?? Math.max(3, width / 90), ticks.xValues, ticks.xFormat).tickSizeOuter(
+        0,
+      ),
     );
     inner.append(
       axis,
@@ -54,11 +77,7 @@ export function axes(ground, x, y, labels, ticks = {}) {
   }
   if (y) {
     const axis = svg("g", { class: "axis grid", "aria-hidden": "true" });
-    select(axis).call(
-      axisLeft(y)
-        .ticks(ticks.y ?? 5, ticks.yFormat)
-        .tickSize(-width),
-    );
+    select(axis).call(ticked(axisLeft(y), ticks.y ?? 5, ticks.yValues, ticks.yFormat).tickSize(-width));
     inner.append(axis, svg("text", { class: "axis-label", x: -8, y: -12, "text-anchor": "start" }, labels.y));
   }
 }

@@ -2,12 +2,13 @@
 
 const MINUS = "−";
 
-/** `decimals` digits after the point; "–" for none. Large numbers keep four digits. */
+/** `decimals` digits after the point; "–" for none. Large numbers keep four digits, and thousands a comma as counts do. */
 export function number(value, decimals = 2) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   const size = Math.abs(value);
   const digits = size >= 999.95 ? 0 : size >= 99.995 ? Math.min(decimals, 1) : decimals;
-  return value.toFixed(digits).replace("-", MINUS);
+  const text = value.toFixed(digits).replace("-", MINUS);
+  return size >= 1000 ? text.replace(/\B(?=(\d{3})+$)/g, ",") : text;
 }
 
 /** "8.13–13.19", "−3.65 to −0.05", "" where there is no interval. */

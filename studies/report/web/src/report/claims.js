@@ -24,8 +24,17 @@ export function certaintyOf(claim) {
 }
 
 /** Every word of `find` stands somewhere in what the claim's row tells. */
-const holds = (claim, find) => {
-  const text = [claim.id, claim.words, claim.claim, claim.where, claim.metric, claim.told, claim.why]
+const holds = (claim, find, spoken) => {
+  const text = [
+    spoken(claim),
+    claim.id,
+    claim.words,
+    claim.claim,
+    claim.where,
+    claim.metric,
+    claim.told,
+    claim.why,
+  ]
     .join(" ")
     .toLowerCase();
   return find
@@ -35,10 +44,10 @@ const holds = (claim, find) => {
 };
 
 /** Claims that pass the filters; `names` are the arms chosen, none: all. */
-export const filterClaims = (claims, { verdict, about, sure, find = "" }, names) =>
+export const filterClaims = (claims, { verdict, about, sure, find = "" }, names, spoken = () => "") =>
   claims.filter(
     (claim) =>
-      holds(claim, find) &&
+      holds(claim, find, spoken) &&
       (verdict === "all" || claim.verdict === verdict) &&
       (about === "all" || claim.metric === about) &&
       (sure === "all" || certaintyOf(claim).includes(sure)) &&
@@ -51,11 +60,39 @@ export const abstractFirst = (claims) => [
   ...claims.filter((claim) => claim.where !== "Abstract"),
 ];
 
+const NETWORKS = { "rc-rfnn": "the controller's network", "robot-rfnn": "the robot's network" };
+const escaped = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
+
+/** Names of arms and of the claim's metric as the tables have them, in place of the engine's. */
+export function inWords(text, claim, model) {
+  const names = { ...NETWORKS };
+  for (const arm of model.arms) {
+    names[arm.name] = arm.label;
+    names[`${arm.name}-p85`] = `P85 of ${arm.label}`;
+  }
+  const studied = model.arms.find((arm) => arm.name === "ed3r-75");
+  if (studied) names["ed3r-p85"] = `P85 of ${studied.label}`; // as the paper calls it
+  const list = Object.keys(names)
+    .sort((a, b) => b.length - a.length)
+    .map(escaped);
+  const metric = model.byName[claim.metric];
+  const short = claim.metric.replace(/_(pct|kj|min)$/, "").replaceAll("_", " ");
+  return text
+    .replace(/ - /g, " − ")
+    .replace(/(?<![\w.])-(?=\d)/g, "−")
+    .replace(/\bablation-(\d)\.\.(\d)/g, "Ablations $1 to $2")
+    .replace(new RegExp(`(?<![\\w-])(${list.join("|")})(?![\\w-])`, "g"), (name) => names[name])
+    .replace(
+      new RegExp(`\\b${escaped(short)}\\b`),
+      metric ? metric.heading.replace(/, (\S+)$/, " ($1)") : short,
+    );
+}
+
 /** What is claimed: the paper's words where ours would be a formula. */
-export const saying = (claim) =>
+export const saying = (claim, words = (text) => text) =>
   claim.words && /[*/]|max\(|min\(/.test(claim.claim)
-    ? { main: `“${claim.words}”`, small: `${claim.claim} (${claim.where})` }
-    : { main: claim.claim, small: `“${claim.words}” (${claim.where})` };
+    ? { main: `“${claim.words}”`, small: `${words(claim.claim)} (${claim.where})` }
+    : { main: words(claim.claim), small: `“${claim.words}” (${claim.where})` };
 
 export function claims(model, store) {
   const { claims: study, run } = model.data;
@@ -99,7 +136,8 @@ export function claims(model, store) {
     el("h2", {}, "The paper's claims"),
     model.data.compared && el("p", { class: "note" }, `Judged by ${model.data.compared[0]} alone.`),
     el("div", { class: "chips" }, chips),
-    el("p", { class: "key" }, study.correction, " ", study.p85_note),
+    el("p", { class: "key" }, study.correction),
+    study.p85_note && el("p", { class: "key" }, study.p85_note),
     el(
       "details",
       { class: "key" },
@@ -137,7 +175,7 @@ export function claims(model, store) {
       sure.input.value = state.sure;
       if (search.value.trim() !== state.find) search.value = state.find;
       const names = state.arms.map((key) => model.arms.find((arm) => arm.key === key)?.name);
-      const found = filterClaims(judged, state, names);
+      const found = filterClaims(judged, state, names, (c) => inWords(c.claim, c, model));
       shown.textContent = `${found.length} of ${judged.length} rows, ${different} different claims (the paper makes some several times)${names.length > 0 ? ", those that speak of the arms chosen" : ""}.`;
       list.replaceChildren(
         sortedTable(columns(model, study), found, { caption: "Claims of the paper and their verdicts" }),
@@ -154,15 +192,23 @@ const columns = (model, study) => [
     label: "says",
     left: true,
     key: (c) => c.claim,
-    text: (c) =>
-      el(
+    text: (c) => {
+      const words = (text) => inWords(text, c, model);
+      const { main, small } = saying(c, words);
+      return el(
         "div",
         { class: "says" },
-        saying(c).main,
-        el("small", {}, saying(c).small),
-        el("small", { class: "why" }, c.why, c.repeats && ` · says the same as ${c.repeats}`),
-        c.p85 && el("small", { class: "why" }, study.p85_note),
-      ),
+        main,
+        el("small", {}, small),
+        el(
+          "small",
+          { class: "why" },
+          words(c.why),
+          c.repeats && ` · says the same as ${c.repeats}`,
+          c.p85 && study.p85_note && " · of P85 see the note above the list",
+        ),
+      );
+    },
   },
   { label: "paper", text: (c) => (c.paper === null ? "" : number(c.paper, 2)), key: (c) => c.paper },
   {
@@ -191,7 +237,7 @@ const columns = (model, study) => [
     label: "verdict",
     left: true,
     text: (c) => [
-      el("span", { class: `verdict ${classOf(c.verdict)}` }, c.told),
+      el("span", { class: `verdict ${classOf(c.verdict)}` }, c.told, c.built && ", by construction"),
       c.other_way && el("small", { class: "why" }, " points the other way"),
     ],
     key: (c) => c.told,

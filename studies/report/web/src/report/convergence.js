@@ -1,7 +1,7 @@
 // How sure after how many missions: half of the interval's width against the number of missions, both logarithmic.
 import { scaleLog } from "d3-scale";
 import { line } from "d3-shape";
-import { axes, canvas, figure, labelWidth } from "../lib/chart.js";
+import { axes, canvas, figure, labelWidth, logTicks } from "../lib/chart.js";
 import { el, svg } from "../lib/dom.js";
 import { count, number } from "../lib/format.js";
 import { tableBehind } from "../lib/table.js";
@@ -15,7 +15,7 @@ const QUANTITIES = [
 
 export function convergence(model, store) {
   const caption =
-    "Half of the width of the 95 % interval that the first n missions of an arm give. Solid: with the luck of training, which more missions of the " +
+    "Of all missions, whatever site or outcome is chosen. Half of the width of the 95 % interval that the first n missions of an arm give, from 100 missions on; both axes are logarithmic. Solid: with the luck of training, which more missions of the " +
     "same networks do not average out; dashed: over missions alone, which falls as one over the square root of n.";
   const { node, picture, behind } = figure("convergence", "How sure after how many missions", caption);
   picture.classList.add("two");
@@ -35,13 +35,31 @@ const curves = (model, metric, state) =>
   model.chosen(state).flatMap((arm) => {
     const found = arm.convergence[metric];
     if (!found || found.missions.length < 2) return [];
-    const points = found.missions.map((n, i) => ({
-      n,
-      all: found.half_width[i],
-      alone: found.half_width_missions[i],
-    }));
-    return [{ arm, metric, points }];
+    return [{ arm, metric, points: fromEnough(pointsOf(found)) }];
   });
+
+const pointsOf = (found) =>
+  found.missions.map((n, i) => ({ n, all: found.half_width[i], alone: found.half_width_missions[i] }));
+
+const ENOUGH = 100;
+
+/** Of fewer missions a half-width says little and would stretch the axis; kept where there would be no curve else. */
+export function fromEnough(points) {
+  const enough = points.filter(({ n }) => n >= ENOUGH);
+  return enough.length > 1 ? enough : points;
+}
+
+const LADDER = [1, 2, 5, 10];
+
+/** The next of 1, 2, 5 times a power of ten, downwards or upwards. */
+export function roundDown(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return Number((LADDER.findLast((step) => step * power <= value * (1 + 1e-9)) * power).toPrecision(1));
+}
+export function roundUp(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return Number((LADDER.find((step) => step * power >= value * (1 - 1e-9)) * power).toPrecision(1));
+}
 
 function draw(place, list, label, store) {
   const ground = canvas(place, {
@@ -56,13 +74,13 @@ function draw(place, list, label, store) {
   }
   const ns = list.flatMap((c) => c.points.map((p) => p.n));
   const x = scaleLog([Math.min(...ns), Math.max(...ns)], [0, ground.width]);
-  const y = scaleLog([Math.min(...values), Math.max(...values)], [ground.height, 0]).nice();
+  const y = scaleLog([roundDown(Math.min(...values)), roundUp(Math.max(...values))], [ground.height, 0]);
   axes(
     ground,
     x,
     y,
     { x: "missions of an arm", y: `half-width, ${label}` },
-    { x: 4, xFormat: "~s", y: 4, yFormat: "~g" },
+    { xValues: logTicks(x, 34), xFormat: count, yValues: logTicks(y, 14), yFormat: (v) => String(v) },
   );
   const path = (key) =>
     line(

@@ -1,7 +1,7 @@
 // How missions spread: a row for each arm, missions stacked by how they ended, with the mean and its interval.
 import { max } from "d3-array";
 import { scaleLinear } from "d3-scale";
-import { axes, canvas, figure, labelWidth } from "../lib/chart.js";
+import { axes, canvas, figure, labelWidth, withEnds } from "../lib/chart.js";
 import { el, svg } from "../lib/dom.js";
 import { count, number, plural, withInterval } from "../lib/format.js";
 import { OUTCOMES } from "../lib/palette.js";
@@ -17,7 +17,7 @@ export function distributions(model, store) {
   const { node, picture, controls, behind } = figure(
     "distributions",
     "How missions spread",
-    "Missions of each arm by their value, stacked by how they ended; every row is as high as its own fullest bin. The line is " +
+    "Missions of each arm by their value, stacked by how they ended, in percent of the arm's missions shown; all rows have one scale, to the fullest bin of any. The line is " +
       "the mean with its 95 % interval, the diamond the paper's. A mission without a reliable look has no confidence and is in no bin. " +
       "A click on a colour chooses the outcome.",
   );
@@ -81,19 +81,47 @@ function draw(place, rows, store) {
   if (rows.length === 0) return ground.root;
   const { scale } = rows[0];
   const x = scaleLinear([scale.from, scale.from + scale.step * scale.bins], [0, ground.width]);
-  axes(ground, x, null, { x: `${scale.label}, ${scale.unit}` });
-  rows.forEach((row, i) => ground.inner.append(drawRow(row, i * step, x, ground.width, narrow, store)));
+  const ticks = withEnds(x.ticks(Math.max(3, ground.width / 90)), x);
+  axes(
+    ground,
+    x,
+    null,
+    { x: `${scale.label}, ${scale.unit}` },
+    { xValues: ticks, xFormat: (value) => number(value, Number.isInteger(value) ? 0 : 1) },
+  );
+  const fullest = fullestShare(rows);
+  rows.forEach((row, i) =>
+    ground.inner.append(drawRow(row, i * step, x, ground.width, { narrow, fullest }, store)),
+  );
   return ground.root;
 }
 
-function drawRow(row, top, x, width, narrow, store) {
+const totalsOf = ({ counts }) => counts[0].map((n, bin) => n + counts[1][bin] + counts[2][bin]);
+
+/** The highest share of an arm's missions in one bin, of all arms. */
+export const fullestShare = (rows) =>
+  max(rows, (row) => {
+    const totals = totalsOf(row);
+    return max(totals) / (total(totals) || 1);
+  }) || 1;
+
+function drawRow(row, top, x, width, { narrow, fullest }, store) {
   const { counts, scale } = row;
-  const totals = counts[0].map((n, bin) => n + counts[1][bin] + counts[2][bin]);
-  const y = scaleLinear([0, max(totals) || 1], [0, ROW - 16]);
+  const totals = totalsOf(row);
+  const all = total(totals) || 1;
+  const y = scaleLinear([0, fullest * all], [0, ROW - 16]);
   const base = top + (narrow ? NAME : 0) + ROW - 6;
   const group = svg("g", { role: "img", "aria-label": `${row.arm.label}: ${spread(row)}` });
-  group.append(svg("line", { class: "ground", x1: 0, x2: width, y1: base, y2: base }));
-  totals.forEach((total, bin) => {
+  group.append(
+    svg("line", { class: "ground", x1: 0, x2: width, y1: base, y2: base }),
+    svg("line", { class: "ground top", x1: 0, x2: width, y1: base - ROW + 16, y2: base - ROW + 16 }),
+    svg(
+      "text",
+      { class: "tick", x: width, y: base - ROW + 13, "text-anchor": "end" },
+      `${number(100 * fullest, 0)} % of missions`,
+    ),
+  );
+  totals.forEach((inBin, bin) => {
     let up = base;
     OUTCOMES.forEach((outcome, o) => {
       const n = counts[o][bin];
@@ -116,7 +144,7 @@ function drawRow(row, top, x, width, narrow, store) {
           ...OUTCOMES.map(
             (other, i) => counts[i][bin] > 0 && `${other.label}: ${plural(counts[i][bin], "mission")}`,
           ),
-          `${count(total)} of ${count(totals.reduce((a, b) => a + b, 0))}`,
+          `${count(inBin)} of ${count(all)}: ${number((100 * inBin) / all, 1)} %`,
         ]),
       );
     });

@@ -2,9 +2,22 @@
 import { button, copyText, el } from "../lib/dom.js";
 import { count, number, plural } from "../lib/format.js";
 
+const FALSE_ALARM =
+  "A look is one timestep's pictures and the score (SCS) that a detector gave them. In a false alarm nothing burns where the robot is sure of it: " +
+  "harmless things that look like fire, drawn anew for each mission and equal for all arms, misled it.";
+const HOW_TO_SEE_ONE =
+  "Missions with “▶ watch” can be seen at once; of any other the command, run where the run's folder is, writes such a page (mission.html).";
+
 export function failures(model) {
   const list = el("div");
-  const node = el("section", { id: "failures" }, watch(model), el("h2", {}, "Missions that failed"), list);
+  const node = el(
+    "section",
+    { id: "failures" },
+    watch(model),
+    el("h2", {}, "Missions that failed"),
+    el("p", { class: "key" }, FALSE_ALARM, " ", model.data.viewers.length > 0 && HOW_TO_SEE_ONE),
+    list,
+  );
   return {
     node,
     title: "Failures",
@@ -12,7 +25,7 @@ export function failures(model) {
       const groups = groupsOf(model, state);
       list.replaceChildren(
         ...(groups.length > 0
-          ? groups.map((group) => groupNode(model, group))
+          ? groups.map((group) => groupNode(model, group, state))
           : [el("p", {}, "None in this selection.")]),
         ...broken(model),
       );
@@ -33,79 +46,117 @@ function watch(model) {
       "ul",
       { class: "watch" },
       viewers.map(({ mission, what, file }) =>
-        el("li", {}, el("a", { href: encodeURI(file) }, mission), `: ${what}`),
+        el("li", {}, el("a", { class: "watch-link", href: encodeURI(file) }, `▶ ${what}`), ` ${mission}`),
       ),
     ),
     el(
       "p",
       { class: "key" },
-      "Any other: its command below writes mission.html; two on one clock: ",
+      "Any other mission has a command in the list below, and under “Every mission” above after a click on its point; with ",
       el("code", {}, "--beside ARM/NUMBER"),
-      ".",
+      " two missions are shown on one clock.",
     ),
   ];
 }
 
-/** [{cause, count, arms: [{arm, count, missions}]}], the most frequent cause first. A site filter hides missions that are listed, not counts. */
+/** Missions of a group at the places chosen: of all, not of those listed. */
+export const countAt = (group, site) =>
+  site === "all"
+    ? group.count
+    : site === "known"
+      ? group.known
+      : site === "unseen"
+        ? group.count - group.known
+        : (group.sites[site] ?? 0);
+
+/** [{cause, count, arms: [{arm, count, of, missions}]}], the most frequent cause first; `of` is all missions of the arm there. */
 export function groupsOf(model, state) {
   const chosen = new Set(model.chosen(state).map((arm) => arm.index));
   const causes = new Map();
   for (const group of model.data.failures) {
     if (!chosen.has(group.arm) || (state.outcome !== "all" && state.outcome !== String(group.outcome)))
       continue;
-    const missions = group.missions.filter(([, site]) => model.atSite(state, site));
-    const whole = state.site === "all";
-    if (missions.length === 0) continue;
-    const known = causes.get(group.cause) ?? { cause: group.cause, count: 0, whole, arms: [] };
-    const here = whole ? group.count : missions.length;
+    const here = countAt(group, state.site);
+    if (here === 0) continue;
+    const known = causes.get(group.cause) ?? { cause: group.cause, count: 0, arms: [] };
+    const arm = model.arms[group.arm];
     known.count += here;
     known.arms.push({
-      arm: model.arms[group.arm],
+      arm,
       count: here,
-      missions,
-      cut: group.missions.length < group.count,
+      of: model.missions(arm, { site: state.site, outcome: "all" }),
+      outcome: group.outcome,
+      missions: group.missions.filter(([, site]) => model.atSite(state, site)),
     });
     causes.set(group.cause, known);
   }
   return [...causes.values()].sort((a, b) => b.count - a.count);
 }
 
-function groupNode(model, group) {
-  const some = !group.whole && group.arms.some((part) => part.cut);
-  return el(
+const PLACES = { all: "", known: " at known sites", unseen: " at new sites" };
+
+/** "8 of 40 missions at this site, the first 5 listed". */
+export function partWords({ count: n, of, missions }, site) {
+  const place = PLACES[site] ?? " at this site";
+  const listed = missions.length;
+  const rest =
+    listed === n
+      ? ""
+      : listed === 0
+        ? ", none listed"
+        : `, ${listed === 1 ? "one" : count(listed)} of them listed`;
+  return `${count(n)} of ${plural(of, "mission")}${place}${rest}`;
+}
+
+/** Why, in short, from what is stored of the mission. */
+export function whyShort(outcome, timesteps, reliable) {
+  const looks = plural(timesteps, "look");
+  if (outcome === 1) return `sure of a fire after ${looks}, ${count(reliable)} above the threshold`;
+  return reliable === 0
+    ? `${looks}, none above the threshold`
+    : `${looks}, ${count(reliable)} above the threshold, never enough in a row`;
+}
+
+const groupNode = (model, group, state) =>
+  el(
     "div",
     { class: "cause" },
-    el("h3", {}, `${count(group.count)}${some ? " or more" : ""} · ${group.cause}`),
+    el("h3", {}, `${count(group.count)} · ${group.cause}`),
     el(
       "div",
       { class: "cause-arms" },
-      group.arms.map((part) => armNode(model, part)),
+      group.arms.map((part) => armNode(model, part, state)),
     ),
   );
-}
 
-const armNode = (model, { arm, count: n, missions, cut }) => {
+function armNode(model, part, state) {
+  const { arm, missions, outcome } = part;
+  const watchable = missions.filter(([number]) => model.viewer(arm, number)).length;
   const body = el("ul", { class: "commands" });
+  // Those that can be watched at once come first.
+  const sorted = [...missions].sort(
+    (a, b) => Boolean(model.viewer(arm, b[0])) - Boolean(model.viewer(arm, a[0])),
+  );
   const details = el(
     "details",
     {
       ontoggle: () =>
         details.open &&
         body.childElementCount === 0 &&
-        body.append(...missions.map((mission) => item(model, arm, mission))),
+        body.append(...sorted.map((mission) => item(model, arm, outcome, mission))),
     },
     el(
       "summary",
       {},
       el("span", { class: "swatch", style: `--c:${arm.colour}`, "aria-hidden": "true" }),
-      ` ${arm.label}: ${plural(n, "mission")} of ${count(arm.missions)}${cut ? `, the first ${missions.length} listed` : ""}`,
+      ` ${arm.label}: ${partWords(part, state.site)}${watchable > 0 ? `, ${watchable} to watch` : ""}`,
     ),
     body,
   );
   return details;
-};
+}
 
-function item(model, arm, [missionNumber, site, energy, duration]) {
+function item(model, arm, outcome, [missionNumber, site, energy, duration, timesteps, reliable]) {
   const command = model.command(arm, missionNumber);
   const file = model.viewer(arm, missionNumber);
   const copy = button("Copy", () => copyText(command, copy), {
@@ -115,11 +166,11 @@ function item(model, arm, [missionNumber, site, energy, duration]) {
   return el(
     "li",
     {},
-    el("code", {}, command),
-    " ",
-    copy,
-    file && [" ", el("a", { href: encodeURI(file) }, "watch")],
-    el("small", {}, ` ${model.sites.get(site)?.name}, ${number(energy, 1)} kJ, ${number(duration, 1)} min`),
+    el("b", {}, `mission ${missionNumber}`),
+    `, ${model.sites.get(site)?.name}: ${whyShort(outcome, timesteps, reliable)} `,
+    el("small", {}, `${number(energy, 1)} kJ, ${number(duration, 1)} min`),
+    file && [" ", el("a", { class: "watch-link", href: encodeURI(file) }, "▶ watch")],
+    el("div", { class: "command" }, el("code", {}, command), " ", copy),
   );
 }
 

@@ -16,6 +16,7 @@ export function filterBar(model, store) {
           class: "arm chip",
           style: `--c:${arm.colour}`,
           "data-arm": arm.key,
+          title: arm.about || undefined,
           onclick: () => store.toggleArm(arm.key),
         },
         el("span", { class: "swatch", "aria-hidden": "true" }),

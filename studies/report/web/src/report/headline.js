@@ -2,10 +2,19 @@
 import { scaleLinear } from "d3-scale";
 import { el, svg } from "../lib/dom.js";
 import { count, interval, number, plural, withInterval } from "../lib/format.js";
+import { OUTCOMES } from "../lib/palette.js";
 import { order } from "../lib/table.js";
 import { withTooltip } from "../lib/tooltip.js";
 
 const MAIN = ["total_energy_kj", "msr_pct", "duration_mean_min", "fp_pct", "bd_pct", "wer_pct", "mscs_pct"];
+
+// Each of them is given where one outcome is chosen.
+const BY_OUTCOME = ["msr_pct", "fp_pct", "bd_pct", "wer_pct"];
+
+const TASK =
+  "A robot looks for a wildfire in a forest: it flies a short way, looks with its camera, and a detector scores the look (SCS, 0 to 100 %). " +
+  "A mission ends when enough looks in a row score above a threshold – in success where it was the fire, in a false alarm where it was not – or when the battery is empty. " +
+  "An arm is one way to decide where to fly and where to process a look.";
 
 const ABBREVIATIONS =
   "Means of a mission's energy and duration. MSR: missions that ended in success. FP: in a false alarm. BD: with an empty battery. " +
@@ -18,7 +27,10 @@ export function headline(model, store) {
     { class: "lead" },
     el("p", { class: "kicker" }, `${data.name} · ${told(data)}`),
     el("h1", {}, data.question || data.name),
+    el("p", { class: "task" }, TASK),
+    news(model),
     el("p", { class: "answer" }, answerOf(data)),
+    armsTold(model),
     data.run_letters &&
       el(
         "p",
@@ -34,11 +46,12 @@ export function headline(model, store) {
     "aria-label": "Main results beside the paper's",
   });
   const note = el("p", { class: "key" });
+  const selection = el("p", { class: "note", role: "status", hidden: true });
   const node = el(
     "section",
     { id: "headline", "aria-label": "What came out" },
     text,
-    model.shown.length > 0 && [table, note],
+    model.shown.length > 0 && [selection, table, note],
   );
   return {
     node,
@@ -47,8 +60,86 @@ export function headline(model, store) {
       if (model.shown.length === 0) return;
       table.replaceChildren(headTable(model, store, state));
       note.replaceChildren(...key(state, model));
+      selection.hidden = !filtered(state);
+      selection.textContent = selectionWords(model, state);
     },
   };
+}
+
+/** The studied arm beside the paper's, in what matters most: nothing where the paper did not fly this. */
+export function newsOf(model) {
+  const arm = model.data.claims.list.length > 0 ? model.arms[model.data.studied] : undefined;
+  if (!arm) return [];
+  return [
+    ["msr_pct", "Missions that find the fire"],
+    ["total_energy_kj", "Energy of a mission"],
+    ["fp_pct", "False alarms"],
+  ].flatMap(([name, what]) => {
+    const paper = arm.paper[name];
+    const cell = paper && model.cell(arm, name);
+    return cell && cell.value !== null ? [{ arm, what, cell, paper, metric: model.byName[name] }] : [];
+  });
+}
+
+function news(model) {
+  const list = newsOf(model);
+  if (list.length === 0) return null;
+  return el(
+    "ul",
+    { class: "news", "aria-label": `${list[0].arm.label}: ours beside the paper's` },
+    list.map(({ arm, what, cell, paper, metric }) =>
+      el(
+        "li",
+        {},
+        el("span", {}, `${what}, ${arm.label}`),
+        el("b", {}, `${number(cell.value, 1)} ${metric.unit}`),
+        el("span", {}, interval(cell.lo, cell.hi, 1) && `95 % interval ${interval(cell.lo, cell.hi, 1)}`),
+        el(
+          "span",
+          { class: paper.within ? "paper within" : "paper" },
+          `${paper.within ? "◆" : "◇"} the paper: ${paper.text} ${metric.unit}${paper.within ? ", within ours" : ", outside ours"}`,
+        ),
+      ),
+    ),
+  );
+}
+
+/** Only where arms differ in it. */
+function threshold(model, arm) {
+  const all = new Set(model.flown.map((other) => other.eta_min_pct));
+  return all.size > 1 && arm.eta_min_pct !== null
+    ? `; sure of a fire from a score of ${arm.eta_min_pct} %`
+    : "";
+}
+
+function armsTold(model) {
+  const told = model.flown.filter((arm) => arm.about && !arm.dir).sort((a, b) => a.warmup - b.warmup);
+  if (told.length === 0) return null;
+  return el(
+    "ul",
+    { class: "arms-told", "aria-label": "What the arms are" },
+    told.map((arm) =>
+      el(
+        "li",
+        {},
+        el("span", { class: "swatch", style: `--c:${arm.colour}`, "aria-hidden": "true" }),
+        el("b", {}, ` ${arm.label}`),
+        `: ${arm.about}${threshold(model, arm)}`,
+      ),
+    ),
+  );
+}
+
+/** What of all missions the table and the pictures show. */
+export function selectionWords(model, { site, outcome }) {
+  const place =
+    { all: "", known: " at the sites known to the warm-up", unseen: " at the sites new to the networks" }[
+      site
+    ] ?? ` at ${model.sites.get(Number(site))?.name}`;
+  const end = OUTCOMES.find((o) => o.id === outcome);
+  return `Shown below: missions${place}${end ? ` that ended in: ${end.label}` : ""}. The sentences above, the claims and the tables are of all missions.${
+    end ? " What the choice of one outcome fixes (MSR, FP, BD, WER) is left out." : ""
+  }`;
 }
 
 function answerOf(data) {
@@ -86,8 +177,12 @@ const key = (state, model) => [
       : "",
 ];
 
+/** The metrics that say something of the missions chosen. */
+export const columnsFor = ({ outcome }) =>
+  outcome === "all" ? MAIN : MAIN.filter((name) => !BY_OUTCOME.includes(name));
+
 function headTable(model, store, state) {
-  const metrics = MAIN.map((name) => model.byName[name]);
+  const metrics = columnsFor(state).map((name) => model.byName[name]);
   const arms = sorted(model, state);
   const scales = metrics.map((metric) => columnScale(model, metric, arms, state));
   const choose = (name) => store.set({ sort: state.sort === `-${name}` ? name : `-${name}` });
@@ -149,6 +244,7 @@ const armButton = (arm, store, state) =>
       class: "arm",
       style: `--c:${arm.colour}`,
       "aria-pressed": String(state.arms.includes(arm.key)),
+      title: arm.about || undefined,
       onclick: () => store.toggleArm(arm.key),
     },
     el("span", { class: "swatch", "aria-hidden": "true" }),

@@ -27,8 +27,15 @@ const allowed = {
   outcome: (outcome) => ["all", "0", "1", "2"].includes(outcome),
   theme: (theme) => ["auto", "light", "dark"].includes(theme),
 };
-const store = makeStore(parseFragment(location.hash, allowed), (state) =>
-  history.replaceState(null, "", `#${writeFragment(state)}`),
+const read = () => {
+  const state = parseFragment(location.hash, {
+    ...allowed,
+    site: (site) => allowed.site(model.siteFromAddress(site)),
+  });
+  return { ...state, site: model.siteFromAddress(state.site) };
+};
+const store = makeStore(read(), (state) =>
+  history.replaceState(null, "", `#${writeFragment({ ...state, site: model.siteToAddress(state.site) })}`),
 );
 
 const bar = filterBar(model, store);
@@ -104,7 +111,7 @@ function update(state) {
 }
 
 store.listen(update);
-addEventListener("hashchange", () => store.set(parseFragment(location.hash, allowed)));
+addEventListener("hashchange", () => store.set(read()));
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => update(store.get()));
 let width = window.innerWidth;
 addEventListener("resize", () => {

@@ -59,6 +59,16 @@ export function makeModel(data) {
     return total;
   }
 
+  const shownNames = new Set([...sites.values()].map((site) => site.shown));
+  const distinct = shownNames.size === sites.size;
+
+  /** A choice of sites in addresses: sites by the number that they are shown with. */
+  const siteToAddress = (site) => (distinct && sites.get(Number(site))?.shown) || site;
+  const siteFromAddress = (text) => {
+    const found = distinct && [...sites.values()].find((site) => site.shown === text);
+    return found ? String(found.number) : text;
+  };
+
   const command = (arm, number) =>
     `ed3r replay ${quoted(arm.dir ?? data.run.dir)} ${quoted(`${arm.stored_name}/${number}`)} --html`;
 
@@ -80,6 +90,8 @@ export function makeModel(data) {
     atSite,
     histogram,
     pooled,
+    siteToAddress,
+    siteFromAddress,
     command,
     viewer,
   };
@@ -113,6 +125,7 @@ function sitesOf(data) {
           number,
           {
             number,
+            shown: shown(number, place?.name),
             name: place?.name ?? `site ${number}`,
             x_m: place?.x_m,
             y_m: place?.y_m,
@@ -122,5 +135,8 @@ function sitesOf(data) {
       }),
   );
 }
+
+/** What a site is called in short, in circles and addresses: the number in its name, else the engine's. */
+const shown = (number, name) => /(\d+)$/.exec(name ?? "")?.[1] ?? String(number);
 
 const knownSites = (data) => new Set(data.known_sites);

@@ -30,13 +30,14 @@ const SHAPES = [
 const MARGIN = { top: 30, right: 24, bottom: 46, left: 46 };
 
 export function plane(model, store) {
-  const { node, picture, behind, told } = figure("plane", "Energy against success", "");
+  const { node, picture, behind, told, heading } = figure("plane", "Energy against success", "");
   return {
     node,
     update(state) {
       const points = pointsOf(model, state);
       picture.replaceChildren(draw(picture, points, state, store));
       told.textContent = caption(points, state);
+      heading.textContent = title(state);
       behind.replaceChildren(numbers(points));
     },
   };
@@ -44,11 +45,16 @@ export function plane(model, store) {
 
 const ofSuccess = (state) => state.outcome === "all" || state.outcome === "0";
 
+/** Of the share that is drawn. */
+export const title = ({ outcome }) =>
+  `Energy against ${{ 1: "false alarms", 2: "empty batteries" }[outcome] ?? "success"}`;
+
 /** Of what is drawn, and no more. */
 export function caption(points, state) {
   const share = ofSuccess(state) ? "in success" : "as chosen above";
+  const of = state.outcome === "all" ? "a mission" : "the missions chosen";
   return [
-    `Each mark is an arm: mean energy of a mission and the share of missions that ended ${share}, with 95 % intervals on both axes.`,
+    `Each mark is an arm: mean energy of ${of} and the share of missions that ended ${share}, with 95 % intervals on both axes.`,
     ofSuccess(state) && "Up and left is better.",
     ofSuccess(state) &&
       undominated(points).length > 1 &&

@@ -2,39 +2,45 @@
 import { scaleLinear } from "d3-scale";
 import { figure } from "../lib/chart.js";
 import { asButton, el, svg } from "../lib/dom.js";
-import { count, number, withInterval } from "../lib/format.js";
+import { count, interval, number, withInterval } from "../lib/format.js";
 import { OUTCOMES, shareColour } from "../lib/palette.js";
 import { relief } from "../lib/relief.js";
+import { order } from "../lib/table.js";
 import { withTooltip } from "../lib/tooltip.js";
 
 export function sites(model, store) {
   const { node, picture, behind } = figure(
     "sites",
     "Where: success at each fire site",
-    "Circles are fire sites, coloured by the success of the arms chosen (all their missions there); a dashed ring: new to the networks. Squares are base stations. Lines are " +
-      "missions of the median duration, one for each outcome. A click on a site chooses it everywhere, in the map and in the table.",
+    "Circles are fire sites with their numbers, coloured by the success of the arms chosen (all their missions there, whatever outcome is chosen). Lines are " +
+      "missions of the median duration, one for each outcome. A click on a site chooses it everywhere, in the map and in the table. In the table beneath each share its 95 % interval and the number of missions.",
   );
   picture.classList.add("two", "sites");
-  return {
-    node,
-    redrawOnTheme: true,
-    update(state) {
-      const colourOf = colours(model, state);
-      picture.replaceChildren(mapOf(model, store, state, colourOf), matrix(model, store, state, colourOf));
-      behind.replaceChildren();
-    },
+  const colourOf = colours(model);
+  let sort = { by: "", down: false }; // an arm's key, "": by number
+  let shown;
+  const update = (state) => {
+    shown = state;
+    const sortBy = (by) => {
+      sort = { by, down: sort.by === by ? !sort.down : by !== "" };
+      update(shown);
+    };
+    picture.replaceChildren(
+      mapOf(model, store, state, colourOf),
+      matrix(model, store, state, colourOf, { sort, sortBy }),
+    );
+    behind.replaceChildren();
   };
+  return { node, redrawOnTheme: true, update };
 }
 
-/** Success in percent -> colour; the scale begins at the worst site of an arm in sight, so that differences show. */
-function colours(model, state) {
-  const rates = model
-    .chosen(state)
-    .flatMap((arm) =>
-      [...model.sites.keys()].map(
-        (site) => model.cell(arm, "msr_pct", { site: String(site), outcome: "all" })?.value ?? 100,
-      ),
-    );
+/** Success in percent -> colour; one scale for whatever is chosen. It begins at the worst site of any arm, so that differences show. */
+function colours(model) {
+  const rates = model.shown.flatMap((arm) =>
+    [...model.sites.keys()].map(
+      (site) => model.cell(arm, "msr_pct", { site: String(site), outcome: "all" })?.value ?? 100,
+    ),
+  );
   const low = Math.min(90, Math.floor(Math.min(...rates) / 10) * 10);
   const colour = (percent) => shareColour((percent - low) / (100 - low));
   return Object.assign(colour, { low });
@@ -85,6 +91,7 @@ function mapOf(model, store, state, colourOf) {
         ],
       ),
     );
+  root.append(northAndScale(x, (1000 * deep) / wide, wide));
   for (const site of model.sites.values())
     if (site.x_m !== undefined) root.append(siteMark(model, store, state, arms, site, x, y, colourOf));
   return el(
@@ -98,8 +105,49 @@ function mapOf(model, store, state, colourOf) {
       ),
     root,
     ramp(colourOf),
+    mapLegend(model),
   );
 }
+
+/** A round length of about a fifth of the map, in metres. */
+export function barLength(wide_m) {
+  const power = 10 ** Math.floor(Math.log10(wide_m / 5));
+  return [5, 2, 1].map((step) => step * power).find((length) => length <= wide_m / 5) ?? power;
+}
+
+/** Where north is, and how far a length on the map is. */
+function northAndScale(x, height, wide_m) {
+  const length = barLength(wide_m);
+  const end = 20 + x(length);
+  return svg(
+    "g",
+    { class: "orientation", "aria-hidden": "true" },
+    svg("path", { d: "M965,78V30M953,46l12,-18l12,18" }),
+    svg("text", { x: 965, y: 106, "text-anchor": "middle" }, "N"),
+    svg("path", { d: `M20,${height - 30}v12H${end}v-12` }),
+    svg("text", { x: (20 + end) / 2, y: height - 34, "text-anchor": "middle" }, `${count(length)} m`),
+  );
+}
+
+const mapLegend = (model) =>
+  el(
+    "p",
+    { class: "key legend" },
+    [...model.sites.values()].some((site) => !site.known) &&
+      el("span", {}, el("span", { class: "ring dashed", "aria-hidden": "true" }), "site new to the networks"),
+    el("span", {}, el("span", { class: "square dark", "aria-hidden": "true" }), "base station"),
+    model.data.missions_shown.length > 0 && [
+      OUTCOMES.map((outcome) =>
+        el(
+          "span",
+          {},
+          el("span", { class: "stroke", style: `--c:var(${outcome.variable})`, "aria-hidden": "true" }),
+          `a mission: ${outcome.label}`,
+        ),
+      ),
+      el("span", {}, el("span", { class: "dot", "aria-hidden": "true" }), "its start"),
+    ],
+  );
 
 function siteMark(model, store, state, arms, site, x, y, colourOf) {
   const there = model.pooled(arms, site.number);
@@ -122,11 +170,7 @@ function siteMark(model, store, state, arms, site, x, y, colourOf) {
     },
     svg("circle", { r: 30, class: site.known ? "halo" : "halo unseen" }),
     svg("circle", { r: 25, fill: colour.fill }),
-    svg(
-      "text",
-      { "text-anchor": "middle", y: 8, fill: colour.ink },
-      share === null ? "–" : number(100 * share, 0),
-    ),
+    svg("text", { "text-anchor": "middle", y: 8, fill: colour.ink }, site.shown),
   );
   return withTooltip(mark, () => [
     site.name,
@@ -173,12 +217,27 @@ const ramp = (colourOf) =>
     "100 %",
   );
 
-function matrix(model, store, state, colourOf) {
+function matrix(model, store, state, colourOf, { sort, sortBy }) {
   const arms = model.chosen(state);
   const metric = model.byName.msr_pct;
   const places = [...model.sites.values()]
     .filter((site) => model.atSite(state, site.number))
     .sort((a, b) => b.known - a.known || a.number - b.number);
+  const by = arms.find((arm) => arm.key === sort.by);
+  if (by) {
+    const rate = (site) => model.cell(by, metric.name, { site: String(site.number), outcome: "all" })?.value;
+    places.sort((a, b) => (sort.down ? -1 : 1) * order(rate(a), rate(b)));
+  } else if (sort.down) places.reverse();
+  const head = (key, label, attributes) =>
+    el(
+      "th",
+      {
+        scope: "col",
+        "aria-sort": sort.by !== key ? "none" : sort.down ? "descending" : "ascending",
+        ...attributes,
+      },
+      el("button", { type: "button", class: "sort", onclick: () => sortBy(key) }, label),
+    );
   const pools = [
     ["known", "all known"],
     ["unseen", "all new"],
@@ -217,7 +276,12 @@ function matrix(model, store, state, colourOf) {
               style: `background:${colour.fill};color:${colour.ink}`,
               title: withInterval(cell, metric),
             },
-            number(cell.value, 0),
+            el("b", {}, number(cell.value, 0)),
+            el(
+              "small",
+              {},
+              [interval(cell.lo, cell.hi, 0), `n ${count(cell.missions)}`].filter(Boolean).join(" · "),
+            ),
           ),
           () => [
             `${arm.label} at ${name}`,
@@ -241,8 +305,8 @@ function matrix(model, store, state, colourOf) {
         el(
           "tr",
           {},
-          el("th", { scope: "col", class: "left" }, "success, %"),
-          arms.map((arm) => el("th", { scope: "col", style: `--c:${arm.colour}` }, arm.label)),
+          head("", "success, %", { class: "left" }),
+          arms.map((arm) => head(arm.key, arm.label, { style: `--c:${arm.colour}` })),
         ),
       ),
       el(
