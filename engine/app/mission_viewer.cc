@@ -9,6 +9,7 @@
 #include "engine/app/decision_text.h"
 #include "engine/app/execution_reason.h"
 #include "engine/app/mission_clock.h"
+#include "engine/app/viewer_distractors.h"
 #include "engine/app/viewer_frames.h"
 #include "engine/app/viewer_rays.h"
 #include "engine/core/check.h"
@@ -205,6 +206,7 @@ Json ViewerMission(StoredRun& run, const std::string& mission) {
                    {"safety_m", config.robot.safety_distance_m},
                    {"met", track.ShortRaysJson()}};
   json["steps"] = StepsJson(record, begins);
+  json["distractors"] = ViewerDistractors(task, record);
   json["frames"] = ViewerFrames(task, record);
   AddDecisions(task, record, json);
   return json;

@@ -14,7 +14,7 @@ namespace ed3r::app {
 //   track         {t_s, x_m, y_m, z_m, yaw_rad}: since the mission's begin, while the robot moves
 //   steps         columns of TimestepRecord, and begin_s, duration_s
 //   lidar         {range_m, safety_m, met: as in viewer_rays.h, at: index into track}
-//   frames        as in viewer_frames.h
+//   frames, distractors  as in viewer_frames.h and viewer_distractors.h
 //   decisions     one per timestep: {rule, why, drawn, admitted, candidates: [[dx_m, dy_m, dz_m, predicted reward]...], the best
 //                 first and some of the others, robot_rewards: [offload, full, quantized], execution_text}
 // Agents are asked by flying again, some times. Throws UserError as StoredRun::Find.

@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { makeClock } from "../src/viewer/clock.js";
-import { endOf, makeMission } from "../src/viewer/mission.js";
+import { decidingLooks, endOf, makeMission, misled } from "../src/viewer/mission.js";
+import { rewardRange } from "../src/viewer/panel.js";
 import { energySoFar } from "../src/viewer/timelines.js";
 
 // Two timesteps of 10 s: 4 s of flight, 3 of sensing, 3 of computing; then 4 of flight, 3 of sensing, 3 of transmitting.
@@ -116,7 +117,11 @@ test("at the end, give or take rounding, it has ended", () => {
 
 test("an end is told with its last looks and what is known of the cause", () => {
   const of = (outcome, scs, fire_in_view) =>
-    endOf({ data: { outcome, eta_min: 0.75 }, steps: { scs, fire_in_view }, count: scs.length });
+    endOf({
+      data: { outcome, eta_min: 0.75, battery_j: 1000 },
+      steps: { scs, fire_in_view, battery_j: scs.map((_, i) => 500 - 100 * i) },
+      count: scs.length,
+    });
   assert.equal(
     of(0, [0.1, 0.8, 0.91], [0, 1, 1]),
     "Ended in success: it was sure of the fire. Its last two looks: SCS 80.0 % (fire in view), then 91.0 % (fire in view); threshold 75.0 %.",
@@ -125,9 +130,38 @@ test("an end is told with its last looks and what is known of the cause", () => 
   assert.match(of(1, [0.8, 0.8], [0, 1]), /false alarm.*The fire was in view, but/);
   assert.match(
     of(2, [0.3], [1]),
-    /battery was empty\. No look of 1 reached .* 30\.0 %\. The fire was in view in 1 of 1\. Its only look: SCS/,
+    /battery was empty: the next timestep would have taken more than what was left \(50\.0 %\), and that ends a mission\. No look of 1 reached .* 30\.0 %\. The fire was in view in 1 of 1\. Its only look: SCS/,
   );
   assert.match(of(2, [0.8, 0.3, 0.2], [1, 0, 0]), /1 of 3 looks reached the threshold, never enough/);
+});
+
+test("the looks that decided are the last sure ones, or the surest where the battery was empty", () => {
+  const of = (outcome, scs) =>
+    decidingLooks({ data: { outcome, eta_min: 0.75 }, steps: { scs }, count: scs.length });
+  assert.deepEqual(of(0, [0.9, 0.1, 0.8, 0.91]), [2, 3]);
+  assert.deepEqual(of(1, [0.1, 0.8]), [1]);
+  assert.deepEqual(of(2, [0.1, 0.7, 0.2]), [1]);
+  assert.deepEqual(of(2, [0, 0, 0]), [2], "none saw a sign");
+  assert.deepEqual(of(2, []), []);
+  assert.equal(mission.lookTime(1), 15.5);
+});
+
+test("a look that something harmless made sure says so", () => {
+  const steps = { scs: [0.8, 0.5], fire_only_scs: [0.021, 0.5] };
+  assert.match(misled({ steps }, 0), /without it the SCS would have been 2\.1 %/);
+  assert.equal(misled({ steps }, 1), "");
+  assert.equal(misled({ steps: { scs: [0.8] } }, 0), "");
+});
+
+test("bars of predicted rewards have one scale in the whole mission", () => {
+  const decisions = [
+    { robot_rewards: [-0.5, null, 0.1] },
+    null,
+    { robot_rewards: [] },
+    { robot_rewards: [-2, 0, 0] },
+  ];
+  assert.deepEqual(rewardRange({ data: { decisions } }), [-2, 0.1]);
+  assert.equal(rewardRange({ data: { decisions: [null] } }), null);
 });
 
 test("energy adds up by part", () => {

@@ -5,8 +5,8 @@ import { shareColour } from "../lib/palette.js";
 import { isDark } from "../lib/relief.js";
 import { makeClock } from "./clock.js";
 import { makeMap } from "./map2d.js";
-import { makeMission, OUTCOMES } from "./mission.js";
-import { cameraPicture, decisionPanel } from "./panel.js";
+import { decidingLooks, decidingName, makeMission, OUTCOMES } from "./mission.js";
+import { cameraPicture, decisionPanel, endNote } from "./panel.js";
 import { NEAR_M, RAY_COLOURS } from "./robot3d.js";
 import { hasWebGl, makeScene } from "./scene3d.js";
 import { timelines } from "./timelines.js";
@@ -40,12 +40,13 @@ const columns = data.missions.map((missionData) => {
       ),
       !missionData.identical && el("p", { class: "note" }, "This flight differs from the stored record."),
     ),
+    endNote(mission, clock),
     el("div", { class: "seen" }, view.node, camera?.node),
     el("p", { class: "key legend" }, pathLegend(), !flat && rayLegend(missionData.lidar)),
     panel.node,
     lines.node,
   );
-  return { node, view, panel, lines, camera };
+  return { node, mission, view, panel, lines, camera };
 });
 
 const play = button("Play", () => clock.toggle(), { class: "play" });
@@ -58,6 +59,16 @@ const scrub = el("input", {
   "aria-label": "Mission time",
   oninput: () => clock.set(Number(scrub.value)),
 });
+// Where the looks are that decided each mission, on the bar.
+const marks = columns.flatMap(({ mission }) =>
+  decidingLooks(mission).map((i) =>
+    el("span", {
+      class: "mark",
+      style: `--at:${mission.lookTime(i) / clock.end}`,
+      title: `${mission.data.label}: ${decidingName(mission).replace("the deciding", "a deciding")}`,
+    }),
+  ),
+);
 const told = el("output", { class: "time" });
 const speed = el(
   "select",
@@ -85,6 +96,7 @@ document.getElementById("app").append(
         { class: "key" },
         same ? "The same scenario: fire, start, radio and CPU draws are equal." : "Different scenarios.",
       ),
+    ways(),
     flat && el("p", { class: "note" }, "Seen from above: this browser has no WebGL."),
   ),
   el(
@@ -98,12 +110,27 @@ document.getElementById("app").append(
     play,
     button("‹", () => step(-1), { "aria-label": "Previous timestep" }),
     button("›", () => step(1), { "aria-label": "Next timestep" }),
-    scrub,
+    el("span", { class: "scrub" }, scrub, el("span", { class: "marks", "aria-hidden": "true" }, marks)),
     told,
     speed,
     !flat && el("div", { class: "looks", role: "group", "aria-label": "Point of view" }, looks),
   ),
 );
+
+/** To the report that the page lies beside, and to the missions that it shows before and after this one. */
+function ways() {
+  if (!data.report) return null;
+  const link = (place, mark) =>
+    place && el("a", { href: encodeURI(place.file) }, mark === "‹" ? `‹ ${place.what}` : `${place.what} ›`);
+  return el(
+    "nav",
+    { class: "ways", "aria-label": "Report and other missions" },
+    el("a", { href: encodeURI(data.report) }, "← Report"),
+    data.what && el("span", {}, `this mission: ${data.what}`),
+    link(data.previous, "‹"),
+    link(data.next, "›"),
+  );
+}
 
 function pathLegend() {
   const ramp = [0, 0.25, 0.5, 0.75, 1].map((share) => shareColour(share).fill).join(",");
@@ -119,6 +146,12 @@ function pathLegend() {
     el("span", {}, flat ? "brown circles: other places for a fire" : "brown rings: other places for a fire"),
     !flat && el("span", {}, "pyramid: what the camera sees"),
     el("span", {}, "dashed line: radio link to the base station"),
+    data.missions.some((mission) => mission.distractors) &&
+      el(
+        "span",
+        {},
+        "violet discs: harmless things that look like fire, drawn for this mission; bright: what misled the look most",
+      ),
   ];
 }
 

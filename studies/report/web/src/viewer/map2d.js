@@ -13,6 +13,10 @@ export function makeMap(world, mission) {
   const station = world.base_stations[mission.data.base_station];
   const link = svg("line", { class: "link", x1: x(station.x_m), y1: y(station.y_m) });
   const points = mission.path();
+  const { places = [], strongest = [] } = mission.data.distractors ?? {};
+  const lures = places.map(([px, py, , radius]) =>
+    svg("circle", { class: "lure", cx: x(px), cy: y(py), r: Math.max(3, x(radius) - x(0)) }),
+  );
   const root = svg(
     "svg",
     {
@@ -38,6 +42,7 @@ export function makeMap(world, mission) {
         r: i === mission.data.site ? 13 : 6,
       }),
     ),
+    lures,
     link,
     points.slice(1).map((p, i) =>
       svg("line", {
@@ -59,6 +64,8 @@ export function makeMap(world, mission) {
         "transform",
         `translate(${x(pose.x)},${y(pose.y)}) rotate(${90 - (pose.yaw * 180) / Math.PI})`,
       );
+      const misleads = strongest[mission.lookedAt(time) ?? -1] ?? -1;
+      lures.forEach((lure, i) => lure.classList.toggle("misleads", i === misleads));
       link.setAttribute("x2", x(pose.x));
       link.setAttribute("y2", y(pose.y));
     },

@@ -108,10 +108,59 @@ export function makeMission(data) {
     ...steps.k.map((_, i) => ({ x: steps.x_m[i], y: steps.y_m[i], z: steps.z_m[i], step: i })),
   ];
 
-  return { data, steps, count, stepAt, phase, ended, pose, scs, path, moving, lookedAt, lidarAt, battery };
+  /** The middle of a timestep's look: the robot hovers where the look was taken. */
+  const lookTime = (i) => steps.begin_s[i] + moving(i) + steps.sensing_s[i] / 2;
+
+  return {
+    data,
+    steps,
+    count,
+    stepAt,
+    phase,
+    ended,
+    pose,
+    scs,
+    path,
+    moving,
+    lookedAt,
+    lookTime,
+    lidarAt,
+    battery,
+  };
 }
 
+const NO_SIGN = 0.0005; // an SCS that is printed as 0.0 %
+
 const percent = (share) => `${(100 * share).toFixed(1)} %`;
+
+/**
+ * The looks that decided how the mission ended, as indices: of one that was sure of a fire the last ones above the threshold,
+ * of one whose battery was empty the surest, or the last where none saw a sign of fire.
+ */
+export function decidingLooks({ data, steps, count }) {
+  if (count === 0) return [];
+  if (data.outcome === 2) {
+    const surest = Math.max(...steps.scs);
+    return [surest > NO_SIGN ? steps.scs.indexOf(surest) : count - 1];
+  }
+  let first = count - 1;
+  while (first > 0 && first > count - 2 && steps.scs[first - 1] >= data.eta_min) --first;
+  return Array.from({ length: count - first }, (_, i) => first + i);
+}
+
+/** What the last of the deciding looks is called. */
+export function decidingName(mission) {
+  const { data, steps } = mission;
+  if (data.outcome !== 2) return "the deciding look";
+  return Math.max(...steps.scs) > NO_SIGN ? "the surest look" : "the last look";
+}
+
+/** What a look would have scored without the harmless things in view; "" where they changed nothing. */
+export function misled({ steps }, i) {
+  const alone = steps.fire_only_scs?.[i];
+  if (alone === undefined || alone === null || Math.abs(alone - steps.scs[i]) < 0.0005) return "";
+  return `something harmless in view was taken for fire: without it the SCS would have been ${percent(alone)}`;
+}
 
 /** Why the mission ended, as far as its record tells. */
 export function endOf({ data, steps, count }) {
@@ -128,12 +177,17 @@ export function endOf({ data, steps, count }) {
     const cause = blind
       ? "The fire was in none of these, so that it took something else for one."
       : "The fire was in view, but without what else it took for fire or smoke these looks would not have been sure.";
-    return `Ended in a false alarm: it was sure of a fire, but what it saw was not the fire. ${told} ${cause}`;
+    const alone = last.map((i) => steps.fire_only_scs?.[i]);
+    const without = alone.every((scs) => scs !== undefined && scs !== null)
+      ? ` Fire and smoke in view alone would have given ${alone.map(percent).join(", then ")}.`
+      : "";
+    return `Ended in a false alarm: it was sure of a fire, but what it saw was not the fire. ${told} ${cause}${without}`;
   }
   const sure =
     reliable === 0
       ? `No look of ${count} reached the threshold; the surest had ${percent(Math.max(...steps.scs))}.`
       : `${reliable} of ${count} looks reached the threshold, never enough in a row.`;
   const seen = steps.fire_in_view.filter(Boolean).length;
-  return `Ended because the battery was empty. ${sure} The fire was in view in ${seen} of ${count}. ${told}`;
+  const left = percent(steps.battery_j[count - 1] / data.battery_j);
+  return `Ended because the battery was empty: the next timestep would have taken more than what was left (${left}), and that ends a mission. ${sure} The fire was in view in ${seen} of ${count}. ${told}`;
 }

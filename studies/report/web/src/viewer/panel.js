@@ -1,24 +1,38 @@
 // What the agents thought in the present timestep, and what came of it.
 import { scaleLinear } from "d3-scale";
-import { el, svg } from "../lib/dom.js";
+import { button, el, svg } from "../lib/dom.js";
 import { number } from "../lib/format.js";
 import { shareColour } from "../lib/palette.js";
-import { endOf, EXECUTION_LABELS } from "./mission.js";
+import { decidingLooks, decidingName, endOf, EXECUTION_LABELS, misled } from "./mission.js";
 
 const WORDS =
   "random: a motion drawn by chance, with probability ε (epsilon, which falls while missions go on); greedy: the candidate of the highest predicted reward; " +
   "admitted: candidates that stay within the world and the ranges of the moment. Grey: still to come.";
 
+/** Why the mission ended, told from the start, with the way to the look that decided it. */
+export function endNote(mission, clock) {
+  const looks = decidingLooks(mission);
+  return el(
+    "p",
+    { class: "end" },
+    endOf(mission),
+    " ",
+    looks.length > 0 &&
+      button(`Jump to ${decidingName(mission)}`, () => clock.set(mission.lookTime(looks.at(-1))), {
+        class: "jump",
+      }),
+  );
+}
+
 export function decisionPanel(mission) {
   const now = el("div", { class: "now" });
   const stage1 = el("div", { class: "stage" });
   const stage2 = el("div", { class: "stage" });
-  const end = el("p", { class: "end", role: "status", hidden: true }, endOf(mission));
+  const range = rewardRange(mission);
   const node = el(
     "div",
     { class: "panel" },
     now,
-    end,
     el("div", { class: "stages" }, stage1, stage2),
     el("p", { class: "key" }, WORDS),
   );
@@ -36,12 +50,11 @@ export function decisionPanel(mission) {
       // What it did and found is told as such once it has happened.
       const looked = mission.lookedAt(time) === i;
       const ended = mission.ended(time);
-      end.hidden = !ended;
       const now_shown = `${i} ${looked} ${ended}`;
       if (now_shown === shown) return;
       shown = now_shown;
       stage1.replaceChildren(...stageOne(mission, i, ended));
-      stage2.replaceChildren(...stageTwo(mission, i, looked, ended));
+      stage2.replaceChildren(...stageTwo(mission, i, looked, ended, range));
     },
   };
 }
@@ -58,7 +71,7 @@ function nowText(mission, time, pose, i) {
     value("threshold", `${number(100 * data.eta_min, 0)} %`),
     value("battery", `${number(100 * mission.battery(time), 1)} %`),
     value("rate", `${number(steps.rate_bps[i] / 1e6, 1)} Mbit/s`),
-    value("at", `${number(pose.x, 1)}, ${number(pose.y, 1)}, ${number(pose.z, 1)} m`),
+    value("at", `${number(pose.x, 0)}, ${number(pose.y, 0)}, ${number(pose.z, 0)} m`),
     value("LiDAR, nearest", nearest(mission, time)),
   ];
 }
@@ -183,15 +196,23 @@ const reasons = (text, drawn) =>
     .map((line) => line.replace(/^ {2}/, ""))
     .join("\n");
 
-function stageTwo(mission, i, looked, ended) {
+/** [lowest, highest] of what the robot's network predicted in the whole mission, null where it was not asked: one scale, so that bars of different timesteps can be compared. */
+export function rewardRange({ data }) {
+  const all = data.decisions
+    .flatMap((decision) => decision?.robot_rewards ?? [])
+    .filter((reward) => reward !== null);
+  return all.length > 0 ? [Math.min(...all), Math.max(...all)] : null;
+}
+
+function stageTwo(mission, i, looked, ended, range) {
   const { steps, data } = mission;
   const decision = data.decisions[i];
   const done = EXECUTION_LABELS[steps.execution[i]];
   const rewards = decision?.robot_rewards ?? [];
   const known = rewards.filter((reward) => reward !== null);
-  const low = Math.min(0, ...known),
-    high = Math.max(1e-9, ...known);
-  const width = scaleLinear([low, high], [2, 100]);
+  const [low, high] = range ?? [0, 1];
+  const width = scaleLinear([low, Math.max(high, low + 1e-9)], [2, 100]);
+  const why = misled(mission, i);
   return [
     el("h3", {}, `Stage 2 · the robot ${looked ? "looks" : "will look"}`),
     el(
@@ -204,6 +225,7 @@ function stageTwo(mission, i, looked, ended) {
       el(
         "div",
         { class: looked ? "predictions" : "predictions future" },
+        el("p", { class: "key" }, "predicted reward (higher is better)"),
         rewards.map((reward, e) =>
           reward === null
             ? null
@@ -219,6 +241,13 @@ function stageTwo(mission, i, looked, ended) {
                 el("span", {}, number(reward, 3)),
               ),
         ),
+        el(
+          "div",
+          { class: "prediction scale" },
+          el("span", {}, "scale of the mission"),
+          el("span", { class: "ends" }, el("span", {}, number(low, 3)), el("span", {}, number(high, 3))),
+          el("span"),
+        ),
       ),
     decision &&
       el("pre", { class: looked ? undefined : "future" }, reasons(decision.execution_text, known.length > 0)),
@@ -226,6 +255,7 @@ function stageTwo(mission, i, looked, ended) {
       "p",
       { class: ended ? "key" : "key future" },
       `${ended ? "" : "will be: "}${data.camera.frames} frames: mean ${number(steps.confidence_mean[i], 3)}, sd ${number(steps.confidence_sd[i], 3)}, SCS ${number(steps.scs[i], 3)}; fire ${steps.fire_in_view[i] ? "" : "not "}in view; ${number(steps.total_j[i], 0)} J`,
+      why && `; ${why}`,
     ),
   ].filter(Boolean);
 }

@@ -66,14 +66,16 @@ export function makeScene(world, mission, dark) {
   const link = linkLine();
   const rays = lidarRays(mission);
   robot.node.add(sign("robot", 9));
-  scene.add(path.node, robot.node, rays.node, link);
+  const lures = luresOf(mission);
+  scene.add(path.node, robot.node, rays.node, link, lures.node);
   const camera = new PerspectiveCamera(50, 1, 0.5, 5000);
   const controls = new OrbitControls(camera, renderer.domElement);
   controls.maxPolarAngle = Math.PI * 0.495;
   controls.enableDamping = false;
   renderer.domElement.setAttribute("role", "img");
   renderer.domElement.setAttribute("aria-label", `The mission of ${mission.data.label} in three dimensions`);
-  const node = el("div", { class: "view" }, renderer.domElement);
+  const frame = el("div", { class: "frame", hidden: true }, el("span", {}, "the camera's picture"));
+  const node = el("div", { class: "view" }, renderer.domElement, frame);
   let mode = "overview",
     time = 0;
 
@@ -97,9 +99,13 @@ export function makeScene(world, mission, dark) {
       -Math.sin(pose.tilt),
       -Math.sin(pose.yaw) * Math.cos(pose.tilt),
     );
-    camera.fov = mode === "onboard" ? onboardFov(mission.data.camera) : 50;
+    const seen = onboard(mission.data.camera, camera.aspect);
+    camera.fov = mode === "onboard" ? seen.fov_deg : 50;
+    frame.hidden = mode !== "onboard";
+    frame.style.width = `${100 * seen.wide}%`;
+    frame.style.height = `${100 * seen.high}%`;
     controls.enabled = mode !== "onboard";
-    robot.node.visible = rays.node.visible = mode !== "onboard";
+    robot.node.visible = rays.node.visible = path.node.visible = link.visible = mode !== "onboard";
     if (mode === "onboard") {
       camera.position.copy(at);
       camera.lookAt(at.clone().add(ahead));
@@ -119,6 +125,7 @@ export function makeScene(world, mission, dark) {
       robot.move(pose, mission.phase(time));
       rays.move(pose, time);
       path.until(mission.stepAt(time), mission.ended(time));
+      lures.mark(mission.lookedAt(time));
       fire.flicker(time);
       moveLink(link, world, mission, pose, time);
       if (mode !== "overview") place();
@@ -136,15 +143,26 @@ export function makeScene(world, mission, dark) {
       if (width === 0) return;
       renderer.setSize(width, height);
       camera.aspect = width / height;
+      if (mode === "onboard") place();
       camera.updateProjectionMatrix();
       render();
     },
   };
 }
 
-/** Of the camera's height, which three asks for. */
-const onboardFov = ({ hfov_deg, aspect }) =>
-  (2 * Math.atan(Math.tan((hfov_deg * Math.PI) / 360) / aspect) * 180) / Math.PI;
+const AROUND = 1.12; // the view on board shows a little more than the camera sees, so that the picture's edge is in sight
+
+/** The view's angle from top to bottom, which three asks for, and the shares of the view that the camera's picture takes. */
+export function onboard({ hfov_deg, aspect }, viewAspect) {
+  const wide = Math.tan((hfov_deg * Math.PI) / 360),
+    high = wide / aspect;
+  const half = AROUND * Math.max(high, wide / viewAspect);
+  return {
+    fov_deg: (2 * Math.atan(half) * 180) / Math.PI,
+    wide: wide / (half * viewAspect),
+    high: high / half,
+  };
+}
 
 /** From the south, above, so that path and fire are in sight. */
 function overview(camera, controls, world, mission) {
@@ -365,6 +383,35 @@ function pathOf(mission) {
         ({ line, stop }, i) =>
           (line.material.opacity = stop.material.opacity = i < step || ended ? 1 : i === step ? 0.7 : 0.16),
       ),
+  };
+}
+
+/** Harmless things that look like fire; the one that misled the last look most is bright. */
+function luresOf({ data }) {
+  const group = new Group();
+  const marks = (data.distractors?.places ?? []).map(([x, y, z, radius]) => {
+    const mark = new Mesh(
+      new CylinderGeometry(radius, radius, 0.3, 16),
+      new MeshBasicMaterial({ color: "#a05fc4", transparent: true, opacity: 0.55 }),
+    );
+    mark.position.copy(toThree(x, y, z));
+    group.add(mark);
+    return mark;
+  });
+  const name = sign("taken for fire", 9);
+  name.visible = false;
+  group.add(name);
+  return {
+    node: group,
+    mark(look) {
+      const at = look === null ? -1 : (data.distractors?.strongest[look] ?? -1);
+      marks.forEach((mark, i) => {
+        mark.material.opacity = i === at ? 1 : 0.55;
+        mark.material.color.set(i === at ? "#ff4fd8" : "#a05fc4");
+      });
+      name.visible = at >= 0;
+      if (at >= 0) name.position.copy(marks[at].position).add(new Vector3(0, 6, 0));
+    },
   };
 }
 

@@ -15,9 +15,10 @@ const LANES = [
   ["rate, Mbit/s", 44],
   ["looks with", 20],
 ];
-const LEFT = 112,
+const LEFT = 152,
   RIGHT = 14,
   GAP = 16;
+// The colours of the same parts in the report; movement, which there holds the hovering, in two shades.
 export const PARTS = [
   {
     label: "movement",
@@ -26,13 +27,23 @@ export const PARTS = [
   },
   {
     label: "hovering while it looks",
-    variable: "--part-3",
+    variable: "--part-1b",
     of: (s, i) => s.hover_sensing_j[i] + s.hover_computing_j[i] + s.hover_transmitting_j[i],
   },
   {
-    label: "computation, radio, sensors",
+    label: "computation",
     variable: "--part-2",
-    of: (s, i) => s.sensing_j[i] + s.computation_j[i] + s.transmission_j[i],
+    of: (s, i) => s.computation_j[i],
+  },
+  {
+    label: "transmission",
+    variable: "--part-3",
+    of: (s, i) => s.transmission_j[i],
+  },
+  {
+    label: "sensing",
+    variable: "--part-4",
+    of: (s, i) => s.sensing_j[i],
   },
 ];
 const MODELS = ["--offloaded", "--full", "--quantized"];
@@ -110,6 +121,21 @@ export function timelines(mission, clock) {
 const summary = ({ data, steps, count }) =>
   `${count} timesteps, highest SCS ${number(100 * Math.max(...steps.scs), 1)} %, ${number(data.energy_j / 1000, 2)} kJ`;
 
+/** Numbers of a lane's scale at its left: its ends, and what else is worth reading. */
+const ticks = (x, y, values) =>
+  values.map(([value, label, extra]) =>
+    svg(
+      "text",
+      {
+        class: extra ? `lane tick ${extra}` : "lane tick",
+        x: x.range()[0] - 6,
+        y: y(value) + 4,
+        "text-anchor": "end",
+      },
+      label,
+    ),
+  );
+
 const ends = ({ steps }) => steps.begin_s.map((begin, i) => begin + steps.duration_s[i]);
 
 function scsLane(mission, x, top, height) {
@@ -126,6 +152,11 @@ function scsLane(mission, x, top, height) {
       y1: y(data.eta_min),
       y2: y(data.eta_min),
     }),
+    ticks(x, y, [
+      [0, "0"],
+      [data.eta_min, number(100 * data.eta_min, 0), "of-threshold"],
+      ...(data.eta_min < 0.85 ? [[1, "100"]] : []),
+    ]),
     steps.scs.map((scs, i) => [
       svg("line", { class: "stem", x1: x(at[i]), x2: x(at[i]), y1: y(0), y2: y(scs) }),
       svg("circle", {
@@ -160,11 +191,10 @@ function energyLane(mission, x, top, height) {
         )(layer),
       }),
     ),
-    svg(
-      "text",
-      { class: "lane end", x: x.range()[1], y: top + 10, "text-anchor": "end" },
-      number(highest, 1),
-    ),
+    ticks(x, y, [
+      [0, "0"],
+      [highest || 1, number(highest, 1)],
+    ]),
   );
 }
 
@@ -174,13 +204,21 @@ function batteryLane(mission, x, top, height) {
     [0, 1],
     ...ends(mission).map((t, i) => [t, mission.steps.battery_j[i] / mission.data.battery_j]),
   ];
-  return svg("path", {
-    class: "trace",
-    d: line(
-      (p) => x(p[0]),
-      (p) => y(p[1]),
-    )(points),
-  });
+  return svg(
+    "g",
+    {},
+    svg("path", {
+      class: "trace",
+      d: line(
+        (p) => x(p[0]),
+        (p) => y(p[1]),
+      )(points),
+    }),
+    ticks(x, y, [
+      [0, "0"],
+      [1, "100"],
+    ]),
+  );
 }
 
 function rateLane(mission, x, top, height) {
@@ -201,11 +239,10 @@ function rateLane(mission, x, top, height) {
         (p) => y(p[1]),
       ).curve(curveStepAfter)(points),
     }),
-    svg(
-      "text",
-      { class: "lane end", x: x.range()[1], y: top + 10, "text-anchor": "end" },
-      number(highest / 1e6, 0),
-    ),
+    ticks(x, y, [
+      [0, "0"],
+      [highest, number(highest / 1e6, 0)],
+    ]),
   );
 }
 
