@@ -7,8 +7,8 @@
 
 namespace ed3r::app {
 
-// {"places": [[x_m, y_m, z_m, radius_m]...], "strongest": [of each timestep the index of the place in view that misled most,
-// -1 for none]}. Null in the pixel tier, where frames show what there was.
+// {"places": [[x_m, y_m, z_m, radius_m]...], "strongest": [of each timestep the index of the place in view that
+// counted most, -1 for none: whether it changed the score tells fire_only_scs]}. Null in the pixel tier, where frames show what there was.
 nlohmann::ordered_json ViewerDistractors(const mission::MissionTask& task,
                                          const mission::MissionRecord& record);
 

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { makeClock } from "../src/viewer/clock.js";
-import { decidingLooks, endOf, makeMission, misled } from "../src/viewer/mission.js";
+import { decidingLooks, endOf, makeMission, misleader, misled } from "../src/viewer/mission.js";
 import { rewardRange } from "../src/viewer/panel.js";
 import { energySoFar } from "../src/viewer/timelines.js";
 
@@ -151,6 +151,8 @@ test("a look that something harmless made sure says so", () => {
   assert.match(misled({ steps }, 0), /without it the SCS would have been 2\.1 %/);
   assert.equal(misled({ steps }, 1), "");
   assert.equal(misled({ steps: { scs: [0.8] } }, 0), "");
+  const at = (look) => misleader({ data: { distractors: { strongest: [4, 2] } }, steps }, look);
+  assert.deepEqual([0, 1, null].map(at), [4, -1, -1], "one that changes no score was not taken for fire");
 });
 
 test("bars of predicted rewards have one scale in the whole mission", () => {

@@ -150,7 +150,7 @@ function pathLegend() {
       el(
         "span",
         {},
-        "violet discs: harmless things that look like fire, drawn for this mission; bright: what misled the look most",
+        "violet discs: harmless things that look like fire, drawn for this mission; bright: what the look took for fire",
       ),
   ];
 }

@@ -3,6 +3,7 @@ import { scaleLinear } from "d3-scale";
 import { el, svg } from "../lib/dom.js";
 import { shareColour } from "../lib/palette.js";
 import { relief } from "../lib/relief.js";
+import { misleader } from "./mission.js";
 
 export function makeMap(world, mission) {
   const [wide, deep] = world.size_m;
@@ -13,7 +14,7 @@ export function makeMap(world, mission) {
   const station = world.base_stations[mission.data.base_station];
   const link = svg("line", { class: "link", x1: x(station.x_m), y1: y(station.y_m) });
   const points = mission.path();
-  const { places = [], strongest = [] } = mission.data.distractors ?? {};
+  const { places = [] } = mission.data.distractors ?? {};
   const lures = places.map(([px, py, , radius]) =>
     svg("circle", { class: "lure", cx: x(px), cy: y(py), r: Math.max(3, x(radius) - x(0)) }),
   );
@@ -64,7 +65,7 @@ export function makeMap(world, mission) {
         "transform",
         `translate(${x(pose.x)},${y(pose.y)}) rotate(${90 - (pose.yaw * 180) / Math.PI})`,
       );
-      const misleads = strongest[mission.lookedAt(time) ?? -1] ?? -1;
+      const misleads = misleader(mission, mission.lookedAt(time));
       lures.forEach((lure, i) => lure.classList.toggle("misleads", i === misleads));
       link.setAttribute("x2", x(pose.x));
       link.setAttribute("y2", y(pose.y));

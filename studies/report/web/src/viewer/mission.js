@@ -155,12 +155,21 @@ export function decidingName(mission) {
   return Math.max(...steps.scs) > NO_SIGN ? "the surest look" : "the last look";
 }
 
-/** What a look would have scored without the harmless things in view; "" where they changed nothing. */
-export function misled({ steps }, i) {
+/** Whether the harmless things in view changed a look's score. */
+const changed = ({ steps }, i) => {
   const alone = steps.fire_only_scs?.[i];
-  if (alone === undefined || alone === null || Math.abs(alone - steps.scs[i]) < 0.0005) return "";
-  return `something harmless in view was taken for fire: without it the SCS would have been ${percent(alone)}`;
-}
+  return alone !== undefined && alone !== null && Math.abs(alone - steps.scs[i]) >= NO_SIGN;
+};
+
+/** Index of the harmless thing that a look took for fire, -1 where none changed its score. */
+export const misleader = (mission, look) =>
+  look !== null && changed(mission, look) ? (mission.data.distractors?.strongest[look] ?? -1) : -1;
+
+/** What a look would have scored without the harmless things in view; "" where they changed nothing. */
+export const misled = (mission, i) =>
+  changed(mission, i)
+    ? `something harmless in view was taken for fire: without it the SCS would have been ${percent(mission.steps.fire_only_scs[i])}`
+    : "";
 
 /** Why the mission ended, as far as its record tells. */
 export function endOf({ data, steps, count }) {

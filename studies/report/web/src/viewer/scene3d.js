@@ -37,6 +37,7 @@ import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { el } from "../lib/dom.js";
 import { shareColour } from "../lib/palette.js";
+import { misleader } from "./mission.js";
 import { lidarRays, robotOf } from "./robot3d.js";
 import { toThree } from "./world_axes.js";
 
@@ -386,10 +387,10 @@ function pathOf(mission) {
   };
 }
 
-/** Harmless things that look like fire; the one that misled the last look most is bright. */
-function luresOf({ data }) {
+/** Harmless things that look like fire; the one that the last look took for fire is bright. */
+function luresOf(mission) {
   const group = new Group();
-  const marks = (data.distractors?.places ?? []).map(([x, y, z, radius]) => {
+  const marks = (mission.data.distractors?.places ?? []).map(([x, y, z, radius]) => {
     const mark = new Mesh(
       new CylinderGeometry(radius, radius, 0.3, 16),
       new MeshBasicMaterial({ color: "#a05fc4", transparent: true, opacity: 0.55 }),
@@ -404,7 +405,7 @@ function luresOf({ data }) {
   return {
     node: group,
     mark(look) {
-      const at = look === null ? -1 : (data.distractors?.strongest[look] ?? -1);
+      const at = misleader(mission, look);
       marks.forEach((mark, i) => {
         mark.material.opacity = i === at ? 1 : 0.55;
         mark.material.color.set(i === at ? "#ff4fd8" : "#a05fc4");
