@@ -47,10 +47,11 @@ def world_with(folder, spacing_m):
 
 
 def trees(scale):
+    """Up to what the ground of this world may carry (one tree a cell and less)."""
     loads, flights = [], []
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        for spacing_m in (16, 8, 4, 2.6, 2) if scale == 1 else (16, 8):
+        for spacing_m in (16, 8, 4, 2.6) if scale == 1 else (16, 8):
             world = world_with(folder, spacing_m)
             count = int(numbers(r'"trees": (\d+)', ed3r("world", world, "--json").text)[0])
             one, some = (ed3r("run", "sweeps/rbs.yaml", "--set", f"mission.world={world}", "--missions", n, "--threads", 1, "--quiet", "--out",
