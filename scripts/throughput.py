@@ -48,6 +48,8 @@ def flown(folder, strategy, missions, envs, threads):
         clocks.append((time.perf_counter(), time.process_time()))
         # Less what the first run took: both load the world.
         wall, cpu = (c - b - (b - a) for a, b, c in zip(*clocks))
+        if wall <= 0 or cpu <= 0:
+            sys.exit(f"throughput: {missions} missions took less than loading the world: ask for more with --missions, or a quieter machine")
         table = run.missions()
         return wall, cpu, table["timesteps"].sum(), table["duration_s"].sum()
 

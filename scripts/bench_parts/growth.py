@@ -23,12 +23,11 @@ def missions(scale):
         sweep = folder / "short.yaml"  # a battery for a few timesteps, so that many missions can be flown
         sweep.write_text("# How does cost grow?\nname: short\nmissions: 100\nseed: 1\nstore: {timesteps: none}\n"
                          "set: {strategy: rbs, robot.battery_mah: 150}\n", encoding="utf-8")
-        for count in (100, 1000, 10000, 100000):
-            if count * scale <= 100000:
-                run = ed3r("run", sweep, "--missions", count, "--threads", 1, "--quiet", "--out", folder / str(count))
-                flown.append((count, run.cpu_s))
-                merge = Taken([program("store_bench"), count, 0, 10]).text
-                merged.append((count, max(numbers(r"merge of \d+ stores +([\d.]+) s", merge)[0], 0.05)))
+        for count in sorted({100, 1000, 10000 // scale}):
+            flown.append((count, ed3r("run", sweep, "--missions", count, "--threads", 1, "--quiet", "--out", folder / str(count)).cpu_s))
+        for count in sorted({1000, 10000, 100000 // scale}):
+            merge = Taken([program("store_bench"), count, 0, 10]).text
+            merged.append((count, max(numbers(r"merge of \d+ stores +([\d.]+) s", merge)[0], 0.05)))
         for count in (100, 1000, 10000, 100000, 1000000):
             planned.append((count, ed3r("plan", sweep, "--missions", count).cpu_s))
     return (curve("missions flown, a battery of 150 mAh, no timesteps kept", "s of processor time, world included", flown)
@@ -48,10 +47,11 @@ def world_with(folder, spacing_m):
 
 
 def trees(scale):
+    """Up to what the ground of this world may carry (one tree a cell and less)."""
     loads, flights = [], []
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        for spacing_m in (16, 8, 4, 2.5, 1.7) if scale == 1 else (16, 8):
+        for spacing_m in (16, 8, 4, 2.6) if scale == 1 else (16, 8):
             world = world_with(folder, spacing_m)
             count = int(numbers(r'"trees": (\d+)', ed3r("world", world, "--json").text)[0])
             one, some = (ed3r("run", "sweeps/rbs.yaml", "--set", f"mission.world={world}", "--missions", n, "--threads", 1, "--quiet", "--out",
@@ -71,5 +71,4 @@ def threads(scale):
     return "threads, the same missions\n" + "\n".join(points) + "\n"
 
 
-def run(scale):
-    return "".join(part(scale) for part in (missions, candidates, trees, threads))
+PARTS = {"missions": missions, "candidates": candidates, "trees": trees, "threads": threads}
