@@ -27,7 +27,8 @@ constexpr perception::PictureSize kLarge{960, 540};
 
 struct Options {
   std::string out, size;
-  std::vector<std::string> worlds = {"sweeps/worlds/training_a.yaml", "sweeps/worlds/training_b.yaml"};
+  std::vector<std::string> worlds = {"sweeps/worlds/training_a.yaml", "sweeps/worlds/training_b.yaml",
+                                     "sweeps/worlds/training_c.yaml"};
   std::vector<std::string> settings;
   int views = 1000;
   int frames = 4;
@@ -190,7 +191,9 @@ Command AddFrames(Program& program) {
   parser.Option("--out", options->out, "Folder for frames.npy, labels.csv, manifest.json and pictures")
       .Required()
       .Path();
-  parser.Option("--world", options->worlds, "World file (YAML), repeatable; default: the two training worlds")
+  parser
+      .Option("--world", options->worlds,
+              "World file (YAML), repeatable; default: training_a, training_b, training_c")
       .OneValue();
   parser.Option("--views", options->views, "Views, half of them with fire or smoke in sight; default 1000");
   parser.Option("--frames", options->frames,
