@@ -35,7 +35,7 @@ class Training:
         self.network = Detector(SIZES[kind]).to(memory_format=torch.channels_last)
         self.index = np.flatnonzero(data.usable)
         self.labels = torch.from_numpy(data.positive.astype(np.float32))
-        self.batches = max(1, len(self.index) // options.batch)
+        self.batches = max(1, int(options.share * len(self.index)) // options.batch)
         self.optimizer = torch.optim.AdamW(self.network.parameters(), lr=options.learning_rate, weight_decay=1e-3)
         self.schedule = torch.optim.lr_scheduler.OneCycleLR(self.optimizer, options.learning_rate,
                                                             total_steps=self.batches * options.epochs, pct_start=0.15)
@@ -44,9 +44,9 @@ class Training:
             self._go_on()
 
     def _go_on(self) -> None:
-        kept = torch.load(checkpoint_path := self.checkpoint)
+        kept = torch.load(self.checkpoint)
         if kept["settings"] != self.settings:
-            print(f"{checkpoint_path}: of another training; starting from nothing", flush=True)
+            print(f"{self.checkpoint}: of another training; starting from nothing", flush=True)
             return
         self.network.load_state_dict(kept["network"])
         self.optimizer.load_state_dict(kept["optimizer"])
@@ -54,7 +54,7 @@ class Training:
         self.best, self.best_state, self.rows = kept["best"], kept["best_state"], kept["rows"]
         self.generator.set_state(kept["generator"])
         torch.set_rng_state(kept["random"])
-        print(f"{checkpoint_path}: going on after epoch {len(self.rows)}", flush=True)
+        print(f"{self.checkpoint}: going on after epoch {len(self.rows)}", flush=True)
 
     def _keep(self) -> None:
         new = self.checkpoint.with_suffix(".new")

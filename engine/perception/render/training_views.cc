@@ -95,7 +95,7 @@ ViewPlan PlanView(std::span<const std::shared_ptr<const TraceScene>> scenes, con
     bool aimed = true;
     if (look == Look::kFire) {
       target_m = FireMiddleM(scene, plan.site);
-    } else if (look == Look::kAsIfFire) {
+    } else if (look == Look::kAsIfFire && attempt < kTries / 2) {  // where all sites lie in sight: anywhere
       target_m = FireMiddleM(
           scene, static_cast<int>(stream.Below(static_cast<std::uint32_t>(scene.Sites().size()))));
     } else if (look == Look::kDistractor && !distractors.empty()) {
