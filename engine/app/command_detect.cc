@@ -10,6 +10,7 @@
 #include "engine/app/settings.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "engine/core/message.h"
 #include "engine/perception/vision/frame_detector.h"
 #include "studies/detection/difference.h"
@@ -23,7 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Options {
-  std::string path;
+  std::string path, table;
   std::vector<std::string> settings;
   bool json = false;
 };
@@ -105,9 +106,18 @@ void Print(const detection::DetectorDifference& d) {
       few ? ", so few that the interval of the accuracy may be too narrow" : "");
 }
 
+// As labels.csv has the frames, in its order.
+void WriteTable(const std::string& path, const Confidences& found) {
+  std::string text = "index,full,quantized\n";
+  for (std::size_t i = 0; i < found.full.size(); ++i)
+    text += fmt::format("{},{:.6f},{:.6f}\n", i, found.full[i], found.quantized[i]);
+  WriteFile(path, text);
+}
+
 int Evaluate(const Options& options, const perception::DetectorPair& detectors) {
   const detection::FrameSet set = detection::ReadFrameSet(options.path);
   const Confidences found = Look(detectors, set.frames);
+  if (!options.table.empty()) WriteTable(options.table, found);
   const std::vector<std::pair<std::string, std::vector<detection::Group>>> tables = {
       {"all", {detection::All(set.labels)}},
       {"world", detection::ByWorld(set.labels)},
@@ -234,6 +244,7 @@ int Detect(const Options& options) {
   ApplySettings(options.settings, Scope::kMission, config);
   const perception::DetectorPair detectors = perception::LoadDetectors(config.perception.detector);
   if (detection::IsFrameSet(options.path)) return Evaluate(options, detectors);
+  if (!options.table.empty()) throw UserError("--table: is for a folder of 'ed3r frames'");
   const int status = LookAtPictures(options, detectors);
   NoteBuiltin(config.perception.detector);
   return status;
@@ -250,6 +261,7 @@ Command AddDetect(Program& program) {
   parser.Option("PATH", options->path, "Folder of 'ed3r frames', folder of pictures, or one picture")
       .Required();
   parser.Option("--set", options->settings, "KEY=VALUE; e.g. perception.detector.full=mine.onnx").OneValue();
+  parser.Option("--table", options->table, "CSV file for the confidences in each frame of 'ed3r frames'");
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] { return Detect(*options); }};
 }

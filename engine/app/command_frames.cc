@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <span>
 
 #include "engine/app/commands.h"
 #include "engine/app/settings.h"
@@ -15,6 +17,7 @@
 #include "engine/perception/render/pictures.h"
 #include "engine/perception/render/renderer.h"
 #include "engine/perception/render/training_views.h"
+#include "engine/perception/vision/frame_detector.h"
 
 namespace ed3r::app {
 namespace {
@@ -27,11 +30,13 @@ constexpr perception::PictureSize kLarge{960, 540};
 
 struct Options {
   std::string out, size;
-  std::vector<std::string> worlds = {"sweeps/worlds/training_a.yaml", "sweeps/worlds/training_b.yaml"};
+  std::vector<std::string> worlds = {"sweeps/worlds/training_a.yaml", "sweeps/worlds/training_b.yaml",
+                                     "sweeps/worlds/training_c.yaml"};
   std::vector<std::string> settings;
   int views = 1000;
   int frames = 4;
   int pictures = 8;
+  double wrong_by = 0.0;
   std::uint64_t seed = 20260101;
 };
 
@@ -98,6 +103,9 @@ class DataSet {
         throw UserError(file + ": a world without fire sites cannot be used here");
       scenes_.push_back(std::make_shared<perception::TraceScene>(*worlds_.back()));
     }
+    if (!(options.wrong_by >= 0.0 && options.wrong_by <= 1.0))
+      throw UserError(fmt::format("--wrong-by: {} is not allowed; allowed: 0 .. 1", options.wrong_by));
+    if (options.wrong_by > 0.0) detectors_ = perception::LoadDetectors(config.perception.detector);
     for (int i = 0; i < options.frames; ++i) numbers_.push_back(i * config.sensing.Frames() / options.frames);
   }
 
@@ -107,9 +115,15 @@ class DataSet {
     FrameFile frames(out / "frames.npy", options_.views * options_.frames, size_);
     std::string labels =
         "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label,tilt_deg,distractors\n";
-    for (int view = 0; view < options_.views; ++view) WriteView(view, frames, labels);
+    int looks = 0;
+    for (int kept = 0; kept < options_.views; ++looks) {
+      if (looks == kMaxViews)
+        throw UserError(
+            fmt::format("--wrong-by: of {} views only {} are wrong by {}", looks, kept, options_.wrong_by));
+      if (WriteView(looks, kept, frames, labels)) ++kept;
+    }
     WriteFile(out / "labels.csv", labels);
-    WriteManifest(out, frames.Close());
+    WriteManifest(out, looks, frames.Close());
     fmt::print(
         "{}: frames.npy ({} views x {} frames, {} x {} px), labels.csv, manifest.json; fire or smoke in {} "
         "views\n",
@@ -117,13 +131,32 @@ class DataSet {
   }
 
  private:
-  void WriteView(int view, FrameFile& frames, std::string& labels) {
+  // Whether a detector's confidence in the first frame is as far from the truth as is asked for.
+  bool Misjudged(const perception::SensingFrames& sensed) const {
+    const perception::FrameStack& all = sensed.frames;
+    const auto first = static_cast<std::ptrdiff_t>(all.rgb.size()) / all.frames;
+    const perception::FrameStack frame{.frames = 1,
+                                       .width_px = all.width_px,
+                                       .height_px = all.height_px,
+                                       .rgb = {all.rgb.begin(), all.rgb.begin() + first}};
+    const double truth = sensed.truth.FireInView() ? 1.0 : 0.0;
+    for (const auto& detector : {detectors_.full, detectors_.quantized}) {
+      double confidence = 0.0;
+      detector->Confidences(frame, std::span(&confidence, 1));
+      if (std::abs(confidence - truth) >= options_.wrong_by) return true;
+    }
+    return false;
+  }
+
+  // False for a view that is not asked for. kept: views written before.
+  bool WriteView(int view, int kept, FrameFile& frames, std::string& labels) {
     const auto number = static_cast<std::uint32_t>(view);
     const perception::ViewPlan plan = perception::PlanView(scenes_, config_, options_.seed, number);
     const auto world = static_cast<std::size_t>(plan.world);
     const perception::Renderer renderer(scenes_[world], plan.site, config_.perception, config_.sensing,
                                         options_.seed, number);
     const perception::SensingFrames sensed = renderer.Sense(plan.pose, 1, numbers_, size_);
+    if (options_.wrong_by > 0.0 && !Misjudged(sensed)) return false;
     frames.Append(sensed.frames);
     const perception::GroundTruth& truth = sensed.truth;
     const bool fire = truth.FireInView();
@@ -132,11 +165,12 @@ class DataSet {
     const std::string props = perception::PropsInView(renderer, scene, plan.pose, config_.sensing);
     for (int i = 0; i < options_.frames; ++i)
       labels += fmt::format("{},{},{},\"{}\",\"{}\",{:.1f},{},{},{:.3f},{},{:.1f},{}\n",
-                            view * options_.frames + i, view, numbers_[static_cast<std::size_t>(i)],
+                            kept * options_.frames + i, view, numbers_[static_cast<std::size_t>(i)],
                             scene.Name(), scene.Sites()[static_cast<std::size_t>(plan.site)].name,
                             truth.distance_m, truth.fire_px, truth.smoke_px, truth.occluded, fire ? 1 : 0,
                             plan.pose.tilt_rad * 180.0 / std::numbers::pi, props);
-    if (view < options_.pictures) WritePictures(view, sensed.frames, renderer, plan.pose);
+    if (kept < options_.pictures) WritePictures(view, sensed.frames, renderer, plan.pose);
+    return true;
   }
 
   void WritePictures(int view, const perception::FrameStack& frames, const perception::Renderer& renderer,
@@ -147,10 +181,15 @@ class DataSet {
     perception::WriteFrame(renderer.Sense(pose, 1, first, kLarge).frames, 0, stem + "_large.png");
   }
 
-  void WriteManifest(const fs::path& out, const std::string& sha256) const {
+  void WriteManifest(const fs::path& out, int looks, const std::string& sha256) const {
     nlohmann::ordered_json manifest;
     manifest["seed"] = options_.seed;
     manifest["views"] = options_.views;
+    if (options_.wrong_by > 0.0) {
+      manifest["wrong_by"] = options_.wrong_by;
+      manifest["views_looked_at"] = looks;
+      manifest["detectors"] = detectors_.fingerprint;
+    }
     manifest["frames_per_view"] = options_.frames;
     manifest["frame_numbers"] = numbers_;
     manifest["width_px"] = size_.width_px;
@@ -171,6 +210,7 @@ class DataSet {
   perception::PictureSize size_;
   std::vector<std::shared_ptr<const world::Scene>> worlds_;
   std::vector<std::shared_ptr<const perception::TraceScene>> scenes_;
+  perception::DetectorPair detectors_;  // of --wrong-by
   std::vector<int> numbers_;
   int with_fire_ = 0;
 };
@@ -190,7 +230,9 @@ Command AddFrames(Program& program) {
   parser.Option("--out", options->out, "Folder for frames.npy, labels.csv, manifest.json and pictures")
       .Required()
       .Path();
-  parser.Option("--world", options->worlds, "World file (YAML), repeatable; default: the two training worlds")
+  parser
+      .Option("--world", options->worlds,
+              "World file (YAML), repeatable; default: training_a, training_b, training_c")
       .OneValue();
   parser.Option("--views", options->views, "Views, half of them with fire or smoke in sight; default 1000");
   parser.Option("--frames", options->frames,
@@ -198,6 +240,8 @@ Command AddFrames(Program& program) {
   parser.Option("--seed", options->seed, "Seed of poses, weather and flicker; default 20260101");
   parser.Option("--pictures", options->pictures, "Views of which PNG files are written too; default 8");
   parser.Option("--size", options->size, "WxH in pixels in place of perception.render's");
+  parser.Option("--wrong-by", options->wrong_by,
+                "Only views of which a detector's confidence is wrong by so much (0 .. 1), to learn from");
   parser.Option("--set", options->settings, "KEY=VALUE; e.g. perception.render.noise=4").OneValue();
   return {parser, [options] { return WriteFrames(*options); }};
 }

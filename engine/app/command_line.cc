@@ -73,6 +73,7 @@ template Argument CommandLine::Option(const std::string&, std::string&, const st
 template Argument CommandLine::Option(const std::string&, int&, const std::string&);
 template Argument CommandLine::Option(const std::string&, std::int64_t&, const std::string&);
 template Argument CommandLine::Option(const std::string&, std::uint64_t&, const std::string&);
+template Argument CommandLine::Option(const std::string&, double&, const std::string&);
 template Argument CommandLine::Option(const std::string&, std::vector<std::string>&, const std::string&);
 template Argument CommandLine::Option(const std::string&, std::vector<int>&, const std::string&);
 

@@ -6,8 +6,9 @@
 namespace ed3r {
 
 struct RenderConfig {
-  int width_px = 96;
-  int height_px = 54;
+  int width_px = 192;
+  int height_px = 108;
+  int frame_step = 3;
   double noise = 2.0;
   double jitter_deg = 0.2;
   double weather = 1.0;
@@ -27,6 +28,14 @@ struct RenderConfig {
            .max = 1080,
            .source = kSource,
            .meaning = "height of the frames that the networks look at"});
+    visit("frame_step", self.frame_step,
+          {.unit = "frame",
+           .min = 1,
+           .max = 100,
+           .source = kSource,
+           .meaning =
+               "of a sensing period's frames every so manieth is rendered and looked at; the cost of all "
+               "is counted"});
     visit("noise", self.noise,
           {.unit = "1/255",
            .min = 0,

@@ -6,10 +6,11 @@ import pathlib
 
 import numpy as np
 
-WIDTH, HEIGHT = 96, 54
+WIDTH, HEIGHT = 192, 108  # of the frames; a network may look at their halves (network.py)
 
 # A frame is positive when the renderer's ground truth says so: one visible pixel of fire or smoke. Frames with fewer
-# than these are left out of training, where a pixel or two teaches noise, never out of an evaluation.
+# than these, in the pixels that the network looks at, are left out of training, where a pixel or two teaches noise,
+# never out of an evaluation.
 FEW_FIRE_PX, FEW_SMOKE_PX = 2, 8
 
 
@@ -17,12 +18,46 @@ class DataError(Exception):
     """Bad input: one line that says what and where."""
 
 
+class Frames:
+    """Frames of several arrays on disk as one list, read where they are asked for; halved ones are averaged over 2 x 2."""
+
+    def __init__(self, parts: list[np.ndarray], chosen=None, halved=False):
+        self.parts, self.halved = parts, halved
+        self.starts = np.cumsum([0] + [len(part) for part in parts])
+        self.chosen = np.arange(self.starts[-1]) if chosen is None else chosen
+
+    def __len__(self) -> int:
+        return len(self.chosen)
+
+    def __getitem__(self, key) -> np.ndarray:
+        numbers = self.chosen[key]
+        found = np.empty((len(numbers), *self.parts[0].shape[1:]), np.uint8)
+        for part, start, end in zip(self.parts, self.starts, self.starts[1:]):
+            inside = (numbers >= start) & (numbers < end)
+            if inside.any():
+                found[inside] = part[numbers[inside] - start]
+        return halve(found) if self.halved else found
+
+    def select(self, mask: np.ndarray) -> "Frames":
+        return Frames(self.parts, self.chosen[mask], self.halved)
+
+    def at_half(self) -> "Frames":
+        return Frames(self.parts, self.chosen, True)
+
+
+def halve(frames: np.ndarray) -> np.ndarray:
+    """The mean of each 2 x 2 pixels, rounded half up: what engine/perception/vision/resize.h makes of such frames."""
+    n, height, width, colours = frames.shape
+    sums = frames.reshape(n, height // 2, 2, width // 2, 2, colours).sum((2, 4), dtype=np.uint16)
+    return ((sums + 2) // 4).astype(np.uint8)
+
+
 @dataclasses.dataclass
 class DataSet:
-    """frames: n x 54 x 96 x 3 bytes; positive: what an evaluation asks for; usable: clear enough to learn from."""
+    """frames: bytes, row by row; positive: what an evaluation asks for; usable: clear enough to learn from."""
 
     name: str
-    frames: np.ndarray
+    frames: Frames
     positive: np.ndarray
     usable: np.ndarray
     view: np.ndarray  # frames of one view stay together when a set is divided
@@ -30,8 +65,13 @@ class DataSet:
     sha256: str
 
     def select(self, mask: np.ndarray) -> "DataSet":
-        return DataSet(self.name, self.frames[mask], self.positive[mask], self.usable[mask], self.view[mask],
+        return DataSet(self.name, self.frames.select(mask), self.positive[mask], self.usable[mask], self.view[mask],
                        {key: values[mask] for key, values in self.columns.items()}, self.sha256)
+
+    def at_half(self) -> "DataSet":
+        """The same as a network sees it that looks at frames of half the width and height."""
+        usable = clear(self.columns, 4) == self.positive if "fire_px" in self.columns else self.usable
+        return dataclasses.replace(self, frames=self.frames.at_half(), usable=usable)
 
     def __len__(self) -> int:
         return len(self.positive)
@@ -44,6 +84,21 @@ def sha256_of(*paths: pathlib.Path) -> str:
             while block := file.read(1 << 20):
                 digest.update(block)
     return digest.hexdigest()
+
+
+def clear(columns: dict[str, np.ndarray], rendered_px: int) -> np.ndarray:
+    """Enough fire or smoke to learn from, where a pixel of the network is so many rendered ones."""
+    return ((columns["fire_px"] >= FEW_FIRE_PX * rendered_px) | (columns["smoke_px"] >= FEW_SMOKE_PX * rendered_px))
+
+
+def joined(sets: list[DataSet]) -> DataSet:
+    if len(sets) == 1:
+        return sets[0]
+    together = hashlib.sha256("".join(s.sha256 for s in sets).encode()).hexdigest()
+    return DataSet(", ".join(s.name for s in sets), Frames([part for s in sets for part in s.frames.parts]),
+                   np.concatenate([s.positive for s in sets]), np.concatenate([s.usable for s in sets]),
+                   np.concatenate([np.char.add(f"{i}/", s.view) for i, s in enumerate(sets)]),
+                   {key: np.concatenate([s.columns[key] for s in sets]) for key in sets[0].columns}, together)
 
 
 def read_rendered(folder: pathlib.Path) -> DataSet:
@@ -65,11 +120,10 @@ def read_rendered(folder: pathlib.Path) -> DataSet:
     number = {key: np.array([float(row[key]) for row in rows]) for key in ("distance_m", "fire_px", "smoke_px",
                                                                          "occluded", "label")}
     positive = number["label"] > 0
-    clear = (number["fire_px"] >= FEW_FIRE_PX) | (number["smoke_px"] >= FEW_SMOKE_PX)
     world = np.array([row["world"] for row in rows])
     view = np.array([f"{row['world']}/{row['view']}" for row in rows])
-    return DataSet(str(folder), frames, positive, clear == positive, view, {**number, "world": world},
-                   sha256_of(folder / "frames.npy", folder / "labels.csv"))
+    return DataSet(str(folder), Frames([frames]), positive, clear(number, 1) == positive, view,
+                   {**number, "world": world}, sha256_of(folder / "frames.npy", folder / "labels.csv"))
 
 
 def read_dfire(folder: pathlib.Path) -> DataSet:
@@ -99,7 +153,7 @@ def read_dfire(folder: pathlib.Path) -> DataSet:
     unknown = np.full(len(frames), np.nan)
     columns = {"distance_m": unknown, "occluded": unknown, "smoke": np.array(smoke), "fire": np.array(fire),
                "world": np.array(["dfire"] * len(frames))}
-    return DataSet(str(folder), np.stack(frames), positive, np.ones(len(frames), bool),
+    return DataSet(str(folder), Frames([np.stack(frames)]), positive, np.ones(len(frames), bool),
                    np.array([p.stem for p in pictures]), columns, sha256_of(*files))
 
 

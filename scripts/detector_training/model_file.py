@@ -5,13 +5,13 @@ import struct
 
 import numpy as np
 
-from .network import CONVOLUTIONS, DENSE, HEIGHT, PIXEL_OFFSET, PIXEL_SCALE, SLOPE, WIDTH
+from .network import CONVOLUTIONS, DENSE, PIXEL_OFFSET, PIXEL_SCALE, SLOPE
 
 MAGIC, VERSION = b"ED3RCNN\n", 1
 
 
-def write(path: pathlib.Path, network, scales: list[dict], full, quantized, provenance: str) -> None:
-    """`full`, `quantized`: (temperature, offset)."""
+def write(path: pathlib.Path, size: tuple[int, int], network, scales: list[dict], full, quantized, provenance: str) -> None:
+    """size: (width, height); `full`, `quantized`: (temperature, offset) of the two arithmetics."""
     payload = bytearray()
 
     def u32(*values):
@@ -28,8 +28,8 @@ def write(path: pathlib.Path, network, scales: list[dict], full, quantized, prov
         data = np.ascontiguousarray(values, "<f4").tobytes()
         payload.extend(struct.pack("<Q", len(data) // 4) + data)
 
-    text("compact 96x54")
-    u32(WIDTH, HEIGHT, 3)
+    text(f"compact {size[0]}x{size[1]}")
+    u32(*size, 3)
     f64(float(np.float32(SLOPE)))
     u32(len(CONVOLUTIONS))
     for design in CONVOLUTIONS:

@@ -40,16 +40,18 @@ def scales_of(network, frames: np.ndarray) -> list[dict]:
 
 
 def integer_logits(network, scales: list[dict], frames: np.ndarray, batch: int = 128) -> np.ndarray:
-    """Sums in doubles, where these integers are exact; the rest in single precision, operation by operation."""
+    """Sums in floats that hold these integers exactly; the rest in single precision, operation by operation."""
     parts = []
     for i in range(0, len(frames), batch):
-        x = torch.from_numpy(np.array(frames[i:i + batch])).permute(0, 3, 1, 2).double()
+        x = torch.from_numpy(np.array(frames[i:i + batch])).permute(0, 3, 1, 2).float()
         for layer, (weight, bias) in enumerate(network.layers):
             q = scales[layer]
             limit = weight_limit(q["input_max"])
             integers = np.clip(np.rint(weight.numpy() / q["weight_scale"]), -limit, limit)
-            w = torch.from_numpy(integers.astype(np.float64))
-            x = x - q["input_zero_point"]  # so that padding with zeros is padding with the zero point
+            # No sum can reach 2^24, or it is one of doubles.
+            exact = limit * q["input_max"] * weight[0].numel() < 2**24
+            w = torch.from_numpy(integers.astype(np.float32 if exact else np.float64))
+            x = x.to(w.dtype) - q["input_zero_point"]  # so that padding with zeros is padding with the zero point
             if layer < len(CONVOLUTIONS):
                 _, kernel, stride = CONVOLUTIONS[layer]
                 sums = F.conv2d(x, w, None, stride, kernel // 2).numpy()
@@ -63,5 +65,5 @@ def integer_logits(network, scales: list[dict], frames: np.ndarray, batch: int =
             n = scales[layer + 1]
             y = np.maximum(y, y * np.float32(SLOPE)) * (np.float32(1.0) / n["input_scale"])
             y = np.clip(y, -n["input_zero_point"], n["input_max"] - n["input_zero_point"])
-            x = torch.from_numpy(np.rint(y).astype(np.float64)) + n["input_zero_point"]
+            x = torch.from_numpy(np.rint(y).astype(np.float32)) + n["input_zero_point"]
     return np.concatenate(parts) if parts else np.zeros(0, np.float32)

@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/app/command.h"
 
@@ -51,6 +54,35 @@ TEST_F(DetectCommand, SaysWhetherQuantizedIsWorseThanFull) {
   EXPECT_EQ(difference["views"], 80);
   EXPECT_EQ(all["difference"], difference);
   EXPECT_TRUE(json["world"]["training b"]["difference"]["auc"].contains("lo"));
+}
+
+TEST_F(DetectCommand, TheTableHoldsEachFrameAndAgreesWithTheScores) {
+  const std::string set = Frames(12);
+  const std::filesystem::path table = scratch_ / "table.csv";
+  const auto json = nlohmann::json::parse(Detect(set + " --json --table " + table.string()));
+  std::istringstream lines(ReadAll(table));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "index,full,quantized");
+  int frames = 0, full = 0, quantized = 0;
+  while (std::getline(lines, line)) {
+    int index = -1;
+    double f = -1.0, q = -1.0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%lf,%lf", &index, &f, &q), 3) << line;
+    EXPECT_EQ(index, frames++);
+    full += f >= 0.5;
+    quantized += q >= 0.5;
+  }
+  EXPECT_EQ(frames, 12);
+  const auto said = [&](const char* model) {
+    const auto& scores = json["all"]["all"][model];
+    return scores["true_positives"].get<int>() + scores["false_positives"].get<int>();
+  };
+  EXPECT_EQ(full, said("full"));
+  EXPECT_EQ(quantized, said("quantized"));
+  const CommandResult picture = Ed3r("detect " ED3R_SOURCE_DIR "/results/perception/view.png --table x.csv");
+  EXPECT_EQ(picture.status, 2);
+  EXPECT_NE(picture.err.find("--table"), std::string::npos) << picture.err;
 }
 
 TEST_F(DetectCommand, FewViewsAreSaidToBeTooFew) {

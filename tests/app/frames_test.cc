@@ -79,13 +79,39 @@ TEST(FramesCommand, WritesAnArrayLabelsAndAManifestThatAgree) {
   EXPECT_EQ(ReadAll(again / "labels.csv"), ReadAll(out / "labels.csv"));
 }
 
+// The same views as without the option, less those that are judged rightly.
+TEST(FramesCommand, KeepsOnlyTheViewsThatADetectorMisjudges) {
+  const ScratchFolder scratch;
+  const std::string more = "--frames 2 --seed 11 --pictures 0 --size 64x36";
+  ASSERT_EQ(Ed3r(Frames(scratch / "all", "--views 60 " + more)).status, 0);
+  const CommandResult result = Ed3r(Frames(scratch / "some", "--views 4 --wrong-by 0.3 " + more));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto manifest = nlohmann::json::parse(ReadAll(scratch / "some/manifest.json"));
+  EXPECT_GE(manifest["views_looked_at"], 4);
+  EXPECT_EQ(manifest["wrong_by"], 0.3);
+  const auto all = LinesOf(ReadAll(scratch / "all/labels.csv"));
+  const auto some = LinesOf(ReadAll(scratch / "some/labels.csv"));
+  ASSERT_EQ(some.size(), 9u);
+  int after = -1;
+  for (std::size_t i = 1; i < some.size(); ++i) {
+    const auto cells = CellsOf(some[i]);
+    EXPECT_EQ(cells[0], std::to_string(i - 1));
+    const int view = std::stoi(cells[1]);
+    EXPECT_GE(view, after);
+    after = view;
+    if (view >= 60) continue;
+    const std::string& same = all[2 * static_cast<std::size_t>(view) + 1 + (i - 1) % 2];
+    EXPECT_EQ(some[i].substr(some[i].find(',')), same.substr(same.find(',')));
+  }
+}
+
 TEST(FramesCommand, BadInputIsOneLineAndNothingIsWritten) {
   const ScratchFolder scratch;
   const std::filesystem::path out = scratch / "set";
   for (const std::string bad :
        {"--views 0", "--views 1000001", "--frames 34", "--frames 0", "--size 15x9", "--size 96",
-        "--size 96x54x3", "--size 1921x1080", "--pictures -1", "--world nowhere.yaml",
-        "--set perception.render.noise=41", "--set perception.render.nose=1"}) {
+        "--size 96x54x3", "--size 1921x1080", "--pictures -1", "--wrong-by 1.5", "--wrong-by -0.1",
+        "--world nowhere.yaml", "--set perception.render.noise=41", "--set perception.render.nose=1"}) {
     const CommandResult result = Ed3r(Frames(out, bad));
     EXPECT_EQ(result.status, 2) << bad;
     EXPECT_EQ(LinesOf(result.err).size(), 1u) << bad << ": " << result.err;

@@ -81,7 +81,7 @@ void ExpectRefusal(const DetectorConfig& config, const std::vector<std::string>&
 
 TEST(ModelFile, WhatIsWrittenIsRead) {
   const TemporaryFolder folder;
-  DetectorModel model = RandomDetectorModel(CompactTopology(), 3);
+  DetectorModel model = RandomDetectorModel(CompactQuantizedTopology(), 3);
   model.full = {.temperature = 1.5, .offset = -0.25};
   model.quantized = {.temperature = 2.5, .offset = 0.75};
   model.provenance = R"({"seed": 3})";
@@ -102,7 +102,7 @@ TEST(ModelFile, WhatIsWrittenIsRead) {
 
 TEST(ModelFile, RefusesDamagedAndForeignFiles) {
   const TemporaryFolder folder;
-  WriteDetectorModel(folder.File("good.ed3rnet"), RandomDetectorModel(CompactTopology(), 4));
+  WriteDetectorModel(folder.File("good.ed3rnet"), RandomDetectorModel(CompactQuantizedTopology(), 4));
   const std::string good = Bytes(folder.File("good.ed3rnet"));
   const auto refused = [&](const std::string& bytes, const std::string& why) {
     const std::string path = folder.Write("bad.ed3rnet", bytes);
@@ -126,7 +126,7 @@ TEST(ModelFile, RefusesDamagedAndForeignFiles) {
 TEST(ModelFile, RefusesScalesThatCannotBeUsed) {
   const TemporaryFolder folder;
   const auto refused = [&](auto&& spoil) {
-    DetectorModel model = RandomDetectorModel(CompactTopology(), 5);
+    DetectorModel model = RandomDetectorModel(CompactQuantizedTopology(), 5);
     spoil(model);
     WriteDetectorModel(folder.File("spoilt.ed3rnet"), model);
     EXPECT_THROW(ReadDetectorModel(folder.File("spoilt.ed3rnet")), UserError);
@@ -152,8 +152,51 @@ TEST(BuiltinDetectors, LoadAndAnswerProbabilities) {
   EXPECT_EQ(LoadDetectors({}).fingerprint, pair.fingerprint);
 }
 
+FrameStack Noise(int width_px, int height_px) {
+  Topology size = CompactFullTopology();
+  size.width_px = width_px;
+  size.height_px = height_px;
+  return {.frames = 1, .width_px = width_px, .height_px = height_px, .rgb = test::NoiseFrames(size, 1, 3)};
+}
+
+TEST(BuiltinDetectors, QuantizedLooksAtTheHalfOfAFrameAndFullDoesNot) {
+  const FrameStack frame = Noise(192, 108);
+  const FrameStack half = Resized(frame, 96, 54);
+  const DetectorPair pair = LoadDetectors({});
+  EXPECT_EQ(ConfidenceIn(*pair.quantized, frame), ConfidenceIn(*pair.quantized, half));
+  EXPECT_NE(ConfidenceIn(*pair.full, frame), ConfidenceIn(*pair.full, half));
+}
+
+TEST(BuiltinDetectors, QuantizedInputFullIsFullInIntegers) {
+  const FrameStack frame = Noise(192, 108);
+  DetectorConfig config;
+  config.quantized_input = QuantizedInput::kFull;
+  const DetectorPair pair = LoadDetectors(config);
+  const auto full = std::make_shared<const DetectorModel>(ParseDetectorModel(BuiltinFullBytes(), "full"));
+  EXPECT_EQ(ConfidenceIn(*pair.quantized, frame),
+            ConfidenceIn(*MakeNetworkDetector(full, Arithmetic::kInteger), frame));
+  const DetectorPair halved = LoadDetectors({});
+  EXPECT_NE(ConfidenceIn(*pair.quantized, frame), ConfidenceIn(*halved.quantized, frame));
+  EXPECT_EQ(ConfidenceIn(*pair.full, frame), ConfidenceIn(*halved.full, frame));
+  EXPECT_NE(pair.fingerprint, halved.fingerprint);
+}
+
+TEST(BuiltinDetectors, AreOfTheTopologiesThatAreTold) {
+  const auto same = [](std::string_view bytes, const Topology& told) {
+    const Topology built_in = ParseDetectorModel(bytes, told.name).topology;
+    EXPECT_EQ(built_in.name, told.name);
+    EXPECT_EQ(built_in.width_px, told.width_px);
+    EXPECT_EQ(built_in.height_px, told.height_px);
+    EXPECT_EQ(MultiplyAdds(built_in), MultiplyAdds(told));
+    EXPECT_EQ(ParameterCount(built_in), ParameterCount(told));
+  };
+  same(BuiltinFullBytes(), CompactFullTopology());
+  same(BuiltinQuantizedBytes(), CompactQuantizedTopology());
+}
+
 TEST(BuiltinDetectors, ManyThreadsShareOneDetectorAndGetTheSameBits) {
-  const auto model = std::make_shared<const DetectorModel>(RandomDetectorModel(CompactTopology(), 6));
+  const auto model =
+      std::make_shared<const DetectorModel>(RandomDetectorModel(CompactQuantizedTopology(), 6));
   for (const Arithmetic arithmetic : {Arithmetic::kFloat, Arithmetic::kInteger}) {
     const auto detector = MakeNetworkDetector(model, arithmetic);
     const FrameStack frames{
@@ -239,6 +282,14 @@ TEST(Resize, MeansAreExact) {
       .frames = 1, .width_px = 3, .height_px = 1, .rgb = {0, 0, 0, 30, 30, 30, 90, 90, 90}};
   EXPECT_EQ(Resized(three, 2, 1).rgb, (std::vector<std::uint8_t>{10, 10, 10, 70, 70, 70}));
   EXPECT_EQ(Resized(frame, 4, 2).rgb, frame.rgb);
+}
+
+// Halving has a way of its own; stretched first, the same frame takes the general one.
+TEST(Resize, HalvesAreThoseOfTheGeneralCase) {
+  const FrameStack frame = Noise(12, 6);
+  const FrameStack half = Resized(frame, 6, 3);
+  ASSERT_EQ(half.rgb.size(), 6u * 3 * 3);
+  EXPECT_EQ(Resized(Resized(frame, 24, 12), 6, 3).rgb, half.rgb);
 }
 
 }  // namespace

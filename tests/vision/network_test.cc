@@ -35,7 +35,7 @@ Topology Awkward() {
 }
 
 TEST(FloatNetwork, AgreesWithPlainLoops) {
-  for (const Topology& topology : {CompactTopology(), Awkward()}) {
+  for (const Topology& topology : {CompactQuantizedTopology(), Awkward()}) {
     const DetectorModel model = RandomDetectorModel(topology, 11);
     const std::vector<std::uint8_t> rgb = test::NoiseFrames(topology, 3, 5);
     const std::vector<float> logits = Logits(*MakeFloatNetwork(model, 3), rgb, 3);
@@ -48,7 +48,7 @@ TEST(FloatNetwork, AgreesWithPlainLoops) {
 }
 
 TEST(IntegerNetwork, EqualsExactIntegerArithmetic) {
-  for (const Topology& topology : {CompactTopology(), Awkward()}) {
+  for (const Topology& topology : {CompactQuantizedTopology(), Awkward()}) {
     const DetectorModel model = RandomDetectorModel(topology, 12);
     const std::vector<std::uint8_t> rgb = test::NoiseFrames(topology, 3, 6);
     const std::vector<float> logits = Logits(*MakeIntegerNetwork(model, 3), rgb, 3);
@@ -77,7 +77,7 @@ TEST(IntegerNetwork, TheLargestProductsDoNotSaturate) {
 }
 
 TEST(Networks, AFrameDoesNotDependOnItsNeighboursOrTheBatch) {
-  const DetectorModel model = RandomDetectorModel(CompactTopology(), 14);
+  const DetectorModel model = RandomDetectorModel(CompactQuantizedTopology(), 14);
   const std::vector<std::uint8_t> rgb = test::NoiseFrames(model.topology, 7, 7);
   for (const auto& make : {MakeFloatNetwork, MakeIntegerNetwork}) {
     const std::unique_ptr<Network> network = make(model, 3);  // 7 = 3 + 3 + 1
@@ -92,7 +92,7 @@ TEST(Networks, AFrameDoesNotDependOnItsNeighboursOrTheBatch) {
 }
 
 TEST(Networks, SameBitsOnOneThreadAndManyAndNoThreadIsStarted) {
-  const DetectorModel model = RandomDetectorModel(CompactTopology(), 15);
+  const DetectorModel model = RandomDetectorModel(CompactQuantizedTopology(), 15);
   const std::vector<std::uint8_t> rgb = test::NoiseFrames(model.topology, 5, 8);
   omp_set_dynamic(0);
   for (const auto& make : {MakeFloatNetwork, MakeIntegerNetwork}) {

@@ -54,9 +54,9 @@ def make_frames(folder: pathlib.Path, views: int, seed: int) -> None:
     for view in range(views):
         for frame in range(2):
             fire = view % 2 == 1
-            frames.append(picture(rng, fire, 54, 96)[0])
+            frames.append(picture(rng, fire, 108, 192)[0])
             rows.append({"index": len(rows), "view": view, "frame": frame, "world": "a, b", "site": 0,
-                         "distance_m": 20.0 * (view % 12), "fire_px": 160 * fire, "smoke_px": 0,
+                         "distance_m": 20.0 * (view % 12), "fire_px": 640 * fire, "smoke_px": 0,
                          "occluded": 0.2 * (view % 4), "label": int(fire)})
     np.save(folder / "frames.npy", np.stack(frames))
     with open(folder / "labels.csv", "w", newline="", encoding="utf-8") as file:
@@ -93,31 +93,58 @@ class TrainDetector(unittest.TestCase):
             done = train(self.folder / "frames", "--test", self.folder / "other", "--out", self.folder / name, "--epochs",
                          4, "--batch", 8)
             self.assertEqual(done.returncode, 0, done.stderr)
-        for name in ("compact.ed3rnet", "compact.onnx", "training.csv", "scores.json"):
-            self.assertEqual((self.folder / "a" / name).read_bytes(), (self.folder / "b" / name).read_bytes(), name)
-
-        expected = json.loads((self.folder / "a/scores.json").read_text())["scores"]["other"]
-        net = self.folder / "a/compact.ed3rnet"
-        found = detect(self.folder / "other", "--set", f"perception.detector.full={net}", "--set",
-                       f"perception.detector.quantized={net}")["all"]["all"]
         for kind in ("full", "quantized"):
-            self.assertGreater(found[kind]["auc"], 0.9)
-            self.assertAlmostEqual(found[kind]["auc"], expected[kind]["auc"], places=6)
-            confusion = expected[kind]["confusion"]
-            self.assertEqual([found[kind][key + "s"] for key in confusion], list(confusion.values()))
+            for name in (f"{kind}.ed3rnet", f"{kind}.onnx", f"{kind}_training.csv", f"{kind}_scores.json"):
+                self.assertEqual((self.folder / "a" / name).read_bytes(), (self.folder / "b" / name).read_bytes(), name)
+            self.assertFalse((self.folder / "a" / f"{kind}.checkpoint").exists())
+
+            expected = json.loads((self.folder / f"a/{kind}_scores.json").read_text())["scores"]["other"]
+            net = self.folder / f"a/{kind}.ed3rnet"
+            found = detect(self.folder / "other", "--set", f"perception.detector.full={net}", "--set",
+                           f"perception.detector.quantized={net}")["all"]["all"]
+            for key, arithmetic in (("full", "float"), ("quantized", "integer")):
+                self.assertGreater(found[key]["auc"], 0.9)
+                self.assertAlmostEqual(found[key]["auc"], expected[arithmetic]["auc"], places=6)
+                confusion = expected[arithmetic]["confusion"]
+                self.assertEqual([found[key][name + "s"] for name in confusion], list(confusion.values()))
+
+    def test_a_training_that_was_stopped_goes_on_and_ends_alike(self):
+        make_frames(self.folder / "frames", 40, 7)
+        make_frames(self.folder / "check", 20, 8)
+        arguments = [self.folder / "frames", "--check", self.folder / "check", "--network", "quantized", "--epochs", 4,
+                     "--batch", 8]
+        whole = train(*arguments, "--out", self.folder / "whole")
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        stopped = subprocess.Popen([sys.executable, SOURCE / "scripts/train_detector.py", *map(str, arguments), "--out",
+                                    self.folder / "stopped"], stdout=subprocess.PIPE, text=True)
+        for line in stopped.stdout:
+            if "epoch   2/4" in line:
+                break
+        stopped.kill()
+        stopped.wait()
+        stopped.stdout.close()
+        self.assertTrue((self.folder / "stopped/quantized.checkpoint").exists())
+        self.assertFalse((self.folder / "stopped/quantized.ed3rnet").exists())
+        rest = train(*arguments, "--out", self.folder / "stopped")
+        self.assertEqual(rest.returncode, 0, rest.stderr)
+        self.assertIn("going on after epoch", rest.stdout)
+        for name in ("quantized.ed3rnet", "quantized_training.csv", "quantized_scores.json"):
+            self.assertEqual((self.folder / "whole" / name).read_bytes(), (self.folder / "stopped" / name).read_bytes(), name)
+        self.assertFalse((self.folder / "whole/full.ed3rnet").exists())
 
     def test_the_exported_onnx_answers_like_the_weights(self):
         make_frames(self.folder / "frames", 40, 3)
-        done = train(self.folder / "frames", "--out", self.folder / "out", "--epochs", 2, "--batch", 8)
+        done = train(self.folder / "frames", "--out", self.folder / "out", "--network", "full", "--epochs", 2, "--batch", 8)
         self.assertEqual(done.returncode, 0, done.stderr)
         pictures = self.folder / "pictures"
         pictures.mkdir()
         for i, frame in enumerate(np.load(self.folder / "frames/frames.npy")[:6]):
             Image.fromarray(frame).save(pictures / f"{i}.png")
-        net, onnx = self.folder / "out/compact.ed3rnet", self.folder / "out/compact.onnx"
+        net, onnx = self.folder / "out/full.ed3rnet", self.folder / "out/full.onnx"
         found = detect(pictures, "--set", f"perception.detector.full={net}", "--set",
-                       f"perception.detector.quantized={onnx}")
-        calibration = json.loads((self.folder / "out/scores.json").read_text())["calibration"]["full"]
+                       f"perception.detector.quantized={onnx}", "--set", "perception.detector.input_width_px=0", "--set",
+                       "perception.detector.input_height_px=0")
+        calibration = json.loads((self.folder / "out/full_scores.json").read_text())["calibration"]["float"]
         for name, confidences in found.items():
             p = confidences["quantized"]  # of the ONNX file, which is not calibrated
             logit = np.log(p / (1 - p)) / calibration["temperature"] + calibration["offset"]
@@ -127,10 +154,11 @@ class TrainDetector(unittest.TestCase):
         make_dfire(self.folder / "dfire", 80)
         done = train("--dataset", "dfire", self.folder / "dfire", "--out", self.folder / "out", "--epochs", 6, "--batch", 8)
         self.assertEqual(done.returncode, 0, done.stderr)
-        scores = json.loads((self.folder / "out/scores.json").read_text())
-        self.assertEqual(scores["provenance"]["dataset"], "dfire")
-        self.assertGreater(scores["scores"]["validation"]["full"]["auc"], 0.8)
-        self.assertTrue((self.folder / "out/reliability.png").stat().st_size > 1000)
+        for kind in ("full", "quantized"):
+            scores = json.loads((self.folder / f"out/{kind}_scores.json").read_text())
+            self.assertEqual(scores["provenance"]["dataset"], "dfire")
+            self.assertGreater(scores["scores"]["check"]["float"]["auc"], 0.8)
+            self.assertTrue((self.folder / f"out/{kind}_reliability.png").stat().st_size > 1000)
 
     def test_bad_input_is_one_line_and_status_2(self):
         (self.folder / "empty").mkdir()

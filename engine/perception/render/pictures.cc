@@ -59,7 +59,8 @@ void WriteContactSheet(const FrameStack& stack, const std::vector<std::string>& 
 void WriteFramePictures(const Renderer& renderer, const robot::Pose& pose, std::uint32_t timestep,
                         const std::vector<std::string>& captions, const std::string& stem) {
   const SensingFrames sensed = renderer.Sense(pose, timestep);
-  WriteContactSheet(sensed.frames, captions, stem + "_frames.png");
+  const int scale = sensed.frames.width_px < 150 ? 3 : 1;
+  WriteContactSheet(sensed.frames, captions, stem + "_frames.png", 6, scale);
   const int middle[] = {sensed.frames.frames / 2};
   WriteFrame(renderer.Sense(pose, timestep, middle, {960, 540}).frames, 0, stem + "_large.png");
 }

@@ -16,8 +16,8 @@ void WriteFrame(const FrameStack& stack, int frame, const std::string& path, int
 void WriteContactSheet(const FrameStack& stack, const std::vector<std::string>& captions,
                        const std::string& path, int across = 6, int scale = 3);
 
-// What the camera saw in one timestep: STEM_frames.png (a sheet of all its frames in the networks' size, with the
-// captions given, e.g. confidences) and STEM_large.png (the middle frame at 960 x 540).
+// What the camera saw in one timestep: STEM_frames.png (a sheet of the frames that the networks look at, in that size,
+// with the captions given, e.g. confidences) and STEM_large.png (one from the middle at 960 x 540).
 void WriteFramePictures(const Renderer& renderer, const robot::Pose& pose, std::uint32_t timestep,
                         const std::vector<std::string>& captions, const std::string& stem);
 

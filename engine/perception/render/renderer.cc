@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "engine/core/check.h"
@@ -84,9 +83,10 @@ Renderer::Renderer(std::shared_ptr<const TraceScene> scene, int site, const Perc
 }
 
 SensingFrames Renderer::Sense(const robot::Pose& pose, std::uint32_t timestep) const {
-  std::vector<int> all(static_cast<std::size_t>(sensing_.Frames()));
-  std::iota(all.begin(), all.end(), 0);
-  return Sense(pose, timestep, all, {perception_.render.width_px, perception_.render.height_px});
+  std::vector<int> numbers;
+  for (int frame = 0; frame < sensing_.Frames(); frame += perception_.render.frame_step)
+    numbers.push_back(frame);
+  return Sense(pose, timestep, numbers, {perception_.render.width_px, perception_.render.height_px});
 }
 
 SensingFrames Renderer::Sense(const robot::Pose& pose, std::uint32_t timestep, std::span<const int> frames,

@@ -44,7 +44,7 @@ class Renderer {
   Renderer(std::shared_ptr<const TraceScene> scene, int site, const PerceptionConfig& perception,
            const SensingConfig& sensing, std::uint64_t seed, std::uint32_t scenario);
 
-  // All frames of a timestep's sensing period, in the size of perception.render.
+  // Of a timestep's sensing period the frames 0, frame_step, 2 frame_step ..., in the size of perception.render.
   SensingFrames Sense(const robot::Pose& pose, std::uint32_t timestep) const;
 
   // Some frames of it (numbers from 0), in any size. Throws InternalError for a size or number out of range.

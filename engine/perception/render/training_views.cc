@@ -14,9 +14,19 @@ namespace {
 
 constexpr int kTries = 400;
 constexpr double kRoomM = 2.0;  // free space around the robot (R24)
-constexpr double kNearestM = 10.0, kFarthestM = 350.0;
-constexpr double kLowestM = 5.0, kHighestM = 100.0;  // above ground
+constexpr double kNearestM = 10.0, kFarthestM = 350.0, kFarthestDistractorM = 150.0;
+constexpr double kLowestM = 3.0, kHighestM = 100.0;  // above ground
 constexpr double kDegree = std::numbers::pi / 180.0;
+
+// What a view is turned towards. As if fire: as a fire would be looked at, at the fire's site where it is hidden or at
+// another one. Without such views a clearing, or ground and sky as far looks at fires have them, would tell of fire.
+enum class Look { kFire, kAnywhere, kDistractor, kAsIfFire };
+constexpr Look kLooksWithoutFire[] = {Look::kAnywhere, Look::kDistractor, Look::kAsIfFire};
+
+Eigen::Vector3d FireMiddleM(const world::Scene& scene, int site) {
+  return scene.Sites()[static_cast<std::size_t>(site)].base_m +
+         Eigen::Vector3d(0, 0, 0.3 * scene.Fire().total_height_m);
+}
 
 bool HasRoom(const world::Scene& scene, const Eigen::Vector3d& at_m) {
   const Eigen::Vector3d& size_m = scene.SizeM();
@@ -77,21 +87,28 @@ ViewPlan PlanView(std::span<const std::shared_ptr<const TraceScene>> scenes, con
   const world::Scene& scene = scenes[static_cast<std::size_t>(plan.world)]->World();
   ED3R_CHECK(!scene.Sites().empty(), "a world without fire sites");
   plan.site = static_cast<int>(stream.Below(static_cast<std::uint32_t>(scene.Sites().size())));
-  const bool want_fire = number % 2 == 0;
-  const bool want_distractor = !want_fire && stream.Uniform() < 0.5;
+  const Look look = number % 2 == 0 ? Look::kFire : kLooksWithoutFire[stream.Below(3)];
   const auto distractors = DrawDistractors(scene, config.perception, seed, number);
   const FireView fire(scene, plan.site);
-  const Eigen::Vector3d middle_m = scene.Sites()[static_cast<std::size_t>(plan.site)].base_m +
-                                   Eigen::Vector3d(0, 0, 0.3 * scene.Fire().total_height_m);
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    const Eigen::Vector3d* target_m = nullptr;
-    if (want_fire) target_m = &middle_m;
-    if (want_distractor && !distractors.empty())
-      target_m = &distractors[stream.Below(static_cast<std::uint32_t>(distractors.size()))].position_m;
-    const robot::Pose pose = DrawPose(scene, target_m, kNearestM, want_fire ? kFarthestM : 150.0, stream);
+    Eigen::Vector3d target_m;
+    bool aimed = true;
+    if (look == Look::kFire) {
+      target_m = FireMiddleM(scene, plan.site);
+    } else if (look == Look::kAsIfFire && attempt < kTries / 2) {  // where all sites lie in sight: anywhere
+      target_m = FireMiddleM(
+          scene, static_cast<int>(stream.Below(static_cast<std::uint32_t>(scene.Sites().size()))));
+    } else if (look == Look::kDistractor && !distractors.empty()) {
+      target_m = distractors[stream.Below(static_cast<std::uint32_t>(distractors.size()))].position_m;
+    } else {
+      aimed = false;
+    }
+    const double farthest_m = look == Look::kDistractor ? kFarthestDistractorM : kFarthestM;
+    const robot::Pose pose = DrawPose(scene, aimed ? &target_m : nullptr, kNearestM, farthest_m, stream);
     if (!HasRoom(scene, pose.position_m)) continue;
     plan.pose = pose;
-    if (fire.Look(pose, config.sensing, config.perception, {}).fire_in_view == want_fire) return plan;
+    if (fire.Look(pose, config.sensing, config.perception, {}).fire_in_view == (look == Look::kFire))
+      return plan;
   }
   ED3R_CHECK(HasRoom(scene, plan.pose.position_m), "a world in which a robot finds no room");
   return plan;

@@ -1,8 +1,9 @@
 // Views for training detectors: poses like those that missions take, balanced between fire and no fire in the frame.
 //
 // Views differ in world, site, weather and distractors (each is a scenario of its own). Every second one is sought
-// where fire or smoke is in line of sight, at 10 .. 350 m; the others where none is, half of them turned towards a
-// distractor. What a frame is labelled is decided by its pixels, not by this search.
+// where fire or smoke is in line of sight, at 10 .. 350 m; the others where none is: a third of them turned anywhere, a
+// third towards a distractor, a third as towards a fire. What a frame is labelled is decided by its pixels, not by this
+// search.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@
 namespace ed3r::perception {
 namespace {
 
-// A third of a sensing period's 33 frames: the activations of that many stay in the second-level cache.
+// As many frames of a sensing period as are looked at by default.
 constexpr int kBatch = 11;
 
 class NetworkDetector final : public FrameDetector {

@@ -36,12 +36,17 @@ std::string ReadBytes(const std::string& key, const std::string& path) {
   return bytes;
 }
 
+std::string_view BuiltinBytes(Arithmetic arithmetic, const DetectorConfig& config) {
+  const bool halved = arithmetic == Arithmetic::kInteger && config.quantized_input == QuantizedInput::kHalf;
+  return halved ? BuiltinQuantizedBytes() : BuiltinFullBytes();
+}
+
 // Built-in networks also come from a file of scripts/train_detector.py, which starts with its magic bytes.
 std::shared_ptr<const FrameDetector> Load(const std::string& key, const std::string& name,
                                           Arithmetic arithmetic, const DetectorConfig& config,
                                           Sha256& fingerprint) {
   const bool builtin = name == kBuiltin;
-  std::string bytes = builtin ? std::string(BuiltinDetectorBytes()) : ReadBytes(key, name);
+  std::string bytes = builtin ? std::string(BuiltinBytes(arithmetic, config)) : ReadBytes(key, name);
   const bool ours = builtin || bytes.starts_with("ED3RCNN\n");
   if (!ours) bytes = WithWeightsInside(std::move(bytes), name, fmt::format("{}: {}", key, name));
   fingerprint.Update(fmt::format("{} {}\n", key, bytes.size()));

@@ -26,7 +26,8 @@ DetectorModel ReadDetectorModel(const std::string& path);
 // The same for a file in memory; `name` stands in messages.
 DetectorModel ParseDetectorModel(std::string_view bytes, const std::string& name);
 
-// The file compiled into the program (weights/compact.ed3rnet).
-std::string_view BuiltinDetectorBytes();
+// The files compiled into the program (weights/full.ed3rnet, weights/quantized.ed3rnet).
+std::string_view BuiltinFullBytes();
+std::string_view BuiltinQuantizedBytes();
 
 }  // namespace ed3r::perception

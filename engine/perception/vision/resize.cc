@@ -29,12 +29,31 @@ std::vector<Cover> Covers(int from_size, int to_size) {
   return covers;
 }
 
+// Half the width and height, with the rounding of the general case.
+FrameStack Halved(const FrameStack& frames) {
+  FrameStack result{
+      .frames = frames.frames, .width_px = frames.width_px / 2, .height_px = frames.height_px / 2, .rgb = {}};
+  const auto row_bytes = 3 * static_cast<std::size_t>(frames.width_px);
+  const auto rows = static_cast<std::size_t>(frames.frames) * static_cast<std::size_t>(result.height_px);
+  result.rgb.resize(rows * row_bytes / 2);
+  std::uint8_t* out = result.rgb.data();
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::uint8_t* upper = frames.rgb.data() + 2 * row * row_bytes;
+    const std::uint8_t* lower = upper + row_bytes;
+    for (std::size_t x = 0; x < row_bytes; x += 6)
+      for (std::size_t c = x; c < x + 3; ++c)
+        *out++ = static_cast<std::uint8_t>((upper[c] + upper[c + 3] + lower[c] + lower[c + 3] + 2) / 4);
+  }
+  return result;
+}
+
 }  // namespace
 
 FrameStack Resized(const FrameStack& frames, int width_px, int height_px) {
   for (const int side : {frames.width_px, frames.height_px, width_px, height_px})
     ED3R_CHECK(side >= 1 && side <= kMaxSide_px, "a picture side out of range");
   if (frames.width_px == width_px && frames.height_px == height_px) return frames;
+  if (frames.width_px == 2 * width_px && frames.height_px == 2 * height_px) return Halved(frames);
   const std::vector<Cover> columns = Covers(frames.width_px, width_px),
                            rows = Covers(frames.height_px, height_px);
   const std::uint64_t area =

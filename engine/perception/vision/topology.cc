@@ -32,6 +32,24 @@ void CheckDesign(const Topology& t) {
         fmt::format("a convolution with {} channels, kernel {}, stride {}", c.channels, c.kernel, c.stride));
 }
 
+Topology Compact(int width_px, int height_px) {
+  return {.name = fmt::format("compact {}x{}", width_px, height_px),
+          .width_px = width_px,
+          .height_px = height_px,
+          .convolutions = {{8, 3, 2},
+                           {8, 3, 1},
+                           {16, 3, 2},
+                           {16, 3, 1},
+                           {32, 3, 2},
+                           {32, 3, 1},
+                           {48, 3, 2},
+                           {48, 3, 1},
+                           {64, 3, 1},
+                           {64, 3, 1},
+                           {64, 3, 2}},
+          .dense = {64, 1}};
+}
+
 }  // namespace
 
 std::vector<LayerShape> Layers(const Topology& topology) {
@@ -92,23 +110,8 @@ std::int64_t MultiplyAdds(const Topology& topology) {
 
 std::int64_t FlopCount(const Topology& topology) { return 2 * MultiplyAdds(topology); }
 
-Topology CompactTopology() {
-  return {.name = "compact 96x54",
-          .width_px = 96,
-          .height_px = 54,
-          .convolutions = {{8, 3, 2},
-                           {8, 3, 1},
-                           {16, 3, 2},
-                           {16, 3, 1},
-                           {32, 3, 2},
-                           {32, 3, 1},
-                           {32, 3, 2},
-                           {32, 3, 1},
-                           {48, 3, 1},
-                           {48, 3, 1},
-                           {64, 3, 2}},
-          .dense = {64, 1}};
-}
+Topology CompactFullTopology() { return Compact(192, 108); }
+Topology CompactQuantizedTopology() { return Compact(96, 54); }
 
 Topology FullSizeTopology() {
   return {.name = "full size 224x224",

@@ -37,6 +37,7 @@ double Difference(const std::vector<std::uint8_t>& a, const std::vector<std::uin
 TEST_F(Frames, AreThirtyThreeOfTheConfiguredSize) {
   perception_.render.width_px = 64;
   perception_.render.height_px = 36;
+  perception_.render.frame_step = 1;
   const SensingFrames sensed = MakeRenderer().Sense(pose_, 1);
   EXPECT_EQ(sensed.frames.frames, 33);
   EXPECT_EQ(sensed.frames.width_px, 64);
@@ -57,7 +58,30 @@ TEST_F(Frames, AreTheSameBytesAgainAndFromOtherThreads) {
   EXPECT_EQ(from_threads[1], first);
 }
 
+TEST_F(Frames, OneInSoManyIsThatOfAll) {
+  perception_.render.width_px = 64;
+  perception_.render.height_px = 36;
+  perception_.render.frame_step = 1;
+  const auto all = MakeRenderer().Sense(pose_, 2).frames.rgb;
+  const std::size_t bytes = 64 * 36 * 3;
+  for (const auto& [step, frames] :
+       {std::pair{3, 11}, std::pair{7, 5}, std::pair{33, 1}, std::pair{100, 1}}) {
+    perception_.render.frame_step = step;
+    const FrameStack some = MakeRenderer().Sense(pose_, 2).frames;
+    ASSERT_EQ(some.frames, frames);
+    ASSERT_EQ(some.rgb.size(), static_cast<std::size_t>(frames) * bytes);
+    for (int i = 0; i < frames; ++i)
+      EXPECT_TRUE(std::equal(some.rgb.begin() + static_cast<std::ptrdiff_t>(i * bytes),
+                             some.rgb.begin() + static_cast<std::ptrdiff_t>((i + 1) * bytes),
+                             all.begin() + static_cast<std::ptrdiff_t>(i * step * bytes)))
+          << step << ", " << i;
+  }
+}
+
 TEST_F(Frames, OneAloneEqualsOneOfAll) {
+  perception_.render.width_px = 96;
+  perception_.render.height_px = 54;
+  perception_.render.frame_step = 1;
   const Renderer renderer = MakeRenderer();
   const auto all = renderer.Sense(pose_, 2).frames.rgb;
   const int some[] = {31, 7};

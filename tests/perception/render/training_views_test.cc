@@ -25,7 +25,7 @@ TEST(DataSet, HalfOfTheViewsShowFireAndAllArePosesOfARobot) {
     EXPECT_EQ(plan.pose.position_m, again.pose.position_m);
     EXPECT_EQ(plan.pose.yaw_rad, again.pose.yaw_rad);
     const Eigen::Vector3d& at_m = plan.pose.position_m;
-    EXPECT_GE(at_m.z() - scene->Ground().HeightAt(at_m.x(), at_m.y()), 5.0 - 1e-9);
+    EXPECT_GE(at_m.z() - scene->Ground().HeightAt(at_m.x(), at_m.y()), 3.0 - 1e-9);
     EXPECT_GE(plan.pose.tilt_rad, 0.0);
     EXPECT_LE(plan.pose.tilt_rad, 0.5 * kPi + 1e-9);
     with_fire += fire.Look(plan.pose, config.sensing, config.perception, {}).fire_in_view;

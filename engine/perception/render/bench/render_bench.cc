@@ -1,8 +1,8 @@
 // Measures where the time of one sensing period goes, over views of the kind that detectors are trained on.
 //
-//   render_bench WORLD.yaml [VIEWS [WxH]]     default: 200 views, 96x54
+//   render_bench WORLD.yaml [VIEWS [WxH [FRAMES]]]     default: 200 views, 192x108, 11 frames
 //
-// For each part: milliseconds of CPU time per sensing period of 33 frames, median and mean over the views, one thread.
+// For each part: milliseconds of CPU time per sensing period, median and mean over the views, one thread.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -49,17 +49,16 @@ void Measure(Part& part, Call call) {
   part.ms.push_back(least);
 }
 
-void Run(const std::string& world, int views, PictureSize size) {
+void Run(const std::string& world, int views, PictureSize size, int frames) {
   const std::shared_ptr<const world::Scene> scene = world::Scene::Load(world);
   const std::vector<std::shared_ptr<const TraceScene>> scenes = {std::make_shared<TraceScene>(*scene)};
   const Config config;
   const PixelGrid grid{size.width_px, size.height_px, 2};
-  std::vector<PlumePhase> phases(33);
+  std::vector<PlumePhase> phases(static_cast<std::size_t>(frames));
   for (std::size_t i = 0; i < phases.size(); ++i) phases[i].time_s = static_cast<double>(i) / 11.0;
-  std::vector<int> numbers(33);
+  std::vector<int> numbers(phases.size());
   std::iota(numbers.begin(), numbers.end(), 0);
-  std::array<Part, 4> parts = {
-      {{"trace", {}}, {"shade", {}}, {"fire and smoke, 33 frames", {}}, {"all, 33 frames", {}}}};
+  std::array<Part, 4> parts = {{{"trace", {}}, {"shade", {}}, {"fire and smoke", {}}, {"all", {}}}};
   for (int view = 0; view < views; ++view) {
     const auto number = static_cast<std::uint32_t>(view);
     const ViewPlan plan = PlanView(scenes, config, kSeed, number);
@@ -74,8 +73,8 @@ void Run(const std::string& world, int views, PictureSize size) {
     Measure(parts[2], [&] { TracePlume(trace, site, scene->Fire(), renderer.Weather(), still.fog, phases); });
     Measure(parts[3], [&] { renderer.Sense(plan.pose, 1, numbers, size); });
   }
-  fmt::print("{}, {} views, {} x {} px, rays in {}\n", scene->Name(), views, size.width_px, size.height_px,
-             world::RayInstructionSet());
+  fmt::print("{}, {} views, {} frames of {} x {} px, rays in {}\n", scene->Name(), views, frames,
+             size.width_px, size.height_px, world::RayInstructionSet());
   for (Part& part : parts) {
     std::sort(part.ms.begin(), part.ms.end());
     const double mean =
@@ -90,13 +89,14 @@ void Run(const std::string& world, int views, PictureSize size) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    fmt::print(stderr, "usage: render_bench WORLD.yaml [VIEWS [WxH]]\n");
+    fmt::print(stderr, "usage: render_bench WORLD.yaml [VIEWS [WxH [FRAMES]]]\n");
     return 2;
   }
-  ed3r::perception::PictureSize size;
+  ed3r::perception::PictureSize size{192, 108};
   if (argc > 3 && std::sscanf(argv[3], "%dx%d", &size.width_px, &size.height_px) != 2) return 2;
+  const int frames = argc > 4 ? std::clamp(std::atoi(argv[4]), 1, 33) : 11;
   try {
-    ed3r::perception::Run(argv[1], argc > 2 ? std::max(1, std::atoi(argv[2])) : 200, size);
+    ed3r::perception::Run(argv[1], argc > 2 ? std::max(1, std::atoi(argv[2])) : 200, size, frames);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "render_bench: {}\n", error.what());
