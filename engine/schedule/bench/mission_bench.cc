@@ -13,8 +13,8 @@
 #include <cstdlib>
 #include <ctime>
 #include <new>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/agents/decisions.h"
