@@ -11,9 +11,9 @@
 namespace ed3r::app {
 namespace {
 
-// Simulated over wall seconds per core of this engine on its reference machine (2 shared cores of an EPYC server with
-// AVX2) in the two tiers of perception.
-constexpr double kRealTimePerCore = 10000.0;
+// Simulated over wall seconds per core in the two tiers of perception: what a shared server's core does at least
+// (results/speed.md has what a free one does).
+constexpr double kRealTimePerCore = 20000.0;
 constexpr double kRealTimePerCoreOnPixels = 1100.0;
 // Mean length of a mission that may end early (paper: RBS).
 constexpr double kEarlyCompletionS = 280.0;
