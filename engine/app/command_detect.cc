@@ -234,8 +234,8 @@ void NoteBuiltin(const DetectorConfig& config) {
   if (config.quantized == "builtin") built_in.emplace_back("Quantized");
   if (!built_in.empty())
     Tell(
-        "note: {} built in and learnt from rendered frames alone; of photographs the confidence tells "
-        "little. Your own: --set perception.detector.full=mine.onnx",
+        "note: {} built in and learnt from rendered frames alone; photographs of fires and of forests "
+        "score alike. Your own: --set perception.detector.full=mine.onnx",
         built_in.size() > 1 ? "both networks are" : built_in.front() + " is");
 }
 

@@ -28,14 +28,14 @@ struct RenderConfig {
            .max = 1080,
            .source = kSource,
            .meaning = "height of the frames that the networks look at"});
-    visit("frame_step", self.frame_step,
-          {.unit = "frame",
-           .min = 1,
-           .max = 100,
-           .source = kSource,
-           .meaning =
-               "of a sensing period's frames every so manieth is rendered and looked at; the cost of all "
-               "is counted"});
+    visit(
+        "frame_step", self.frame_step,
+        {.unit = "frame",
+         .min = 1,
+         .max = 100,
+         .source = kSource,
+         .meaning = "one in so many of a sensing period's frames is rendered and looked at; the cost of all "
+                    "is counted"});
     visit("noise", self.noise,
           {.unit = "1/255",
            .min = 0,
