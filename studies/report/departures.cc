@@ -8,6 +8,7 @@
 #include <span>
 
 #include "engine/config/parameters.h"
+#include "engine/config/perception.h"
 #include "engine/store/reader.h"
 #include "engine/sweep/arm_id.h"
 #include "engine/sweep/plan_text.h"
@@ -69,6 +70,10 @@ Bearing BearingOf(const std::string& key, const FlownArm& arm) {
   // The warm-up's scenarios are set apart from the online ones somewhere, it does not matter where.
   if (key == "mission.first_scenario") return arm.warmup ? Bearing::kNone : Bearing::kEffort;
   if (key == "mission.physics_hz") return Bearing::kNone;  // the paper has no step of the physics
+  // What renders frames and looks at them decides nothing where none are.
+  if ((key.starts_with("perception.render.") || key.starts_with("perception.detector.")) &&
+      Setting(*arm.settings, "perception.tier") != NameOf(PerceptionTier::kPixels))
+    return Bearing::kNone;
   if (!key.starts_with("training.")) return Bearing::kResults;
   return arm.paper != nullptr && arm.paper->learns ? Bearing::kEffort : Bearing::kNone;
 }

@@ -282,7 +282,7 @@ class ArgumentsTest(unittest.TestCase):
     def test_messages_speak_of_arguments(self):
         out = self.root / "two policies"
         ed3r.fly(self.sweep, hovering, out, missions=2)
-        self.refused("policy.*; give another out, or remove that folder$", ed3r.fly, self.sweep, too_far, out, missions=2)
+        self.refused("policy.*; give another out$", ed3r.fly, self.sweep, too_far, out, missions=2)
         self.refused("recipe: .*; give another out, or remove that folder$", ed3r.fly, self.sweep, hovering, out, missions=2, seed=4)
         self.refused("settings: agents.eta_mim=1: agents.eta_mim.*eta_min", self.env, settings=["agents.eta_mim=1"])
         self.refused("settings: agents.eta_min: is not allowed; allowed: KEY=VALUE", self.env, settings=["agents.eta_min"])

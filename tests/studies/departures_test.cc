@@ -57,10 +57,24 @@ TEST(DeparturesTest, ThePaperHasNoStepOfThePhysics) {
   EXPECT_TRUE(found.effort.empty());
 }
 
+bool OfPixels(const std::string& key) {
+  return key.starts_with("perception.render.") || key.starts_with("perception.detector.");
+}
+
+// A run of before the detectors changed is still the paper's where it looked at no pixels.
+TEST(DeparturesTest, WhatLooksAtFramesMattersWhereThereAreSome) {
+  const std::string profile = With(PlanOfSweep("paper"), "arm=ed3r-75", "perception.render.width_px", "96");
+  EXPECT_TRUE(Of(profile).PaperFlown());
+  const report::Departures found = Of(With(profile, "arm=ed3r-75", "perception.tier", "pixels"));
+  EXPECT_EQ(found.results.size(), 2u) << report::DepartureText(found.results);
+}
+
 TEST(DeparturesTest, EveryParameterThatIsNotEffortDoes) {
   const std::string paper = PlanOfSweep("paper");
   for (const ParameterInfo& parameter : Parameters()) {
-    if (parameter.scope != Scope::kMission || parameter.key == "mission.physics_hz") continue;
+    if (parameter.scope != Scope::kMission || parameter.key == "mission.physics_hz" ||
+        OfPixels(parameter.key))
+      continue;
     const report::Departures found = Of(With(paper, "arm=ed3r-75", parameter.key, "another"));
     const bool effort = parameter.key.starts_with("training.") || parameter.key == "mission.first_scenario";
     const std::vector<report::Departure>& list = effort ? found.effort : found.results;
