@@ -153,7 +153,8 @@ TEST_F(GrowthTest, WhatHasFailedIsStillTheSameMissions) {
 
 TEST_F(GrowthTest, WhatWouldChangeStoredMissionsIsRefusedWithTheDifference) {
   Fly(Dir(), Masses({1, 2}, 10));
-  const std::string head = "holds results of another recipe: ", tail = "; give another --out, or remove that folder";
+  const std::string head = "holds results of another recipe: ",
+                    tail = "; give another --out, or remove that folder";
   EXPECT_EQ(Refused(Masses({1, 2}, 9)),
             head + "stage online has 10 missions per arm there and 9 here, and none is taken out" + tail);
   EXPECT_EQ(Refused(Masses({1, 3}, 10)),
