@@ -8,6 +8,8 @@
             (15 minutes on two cores instead of three hours)
   predict   from a report of sweeps/matched.yaml (--report DIR, --run DIR): in how many worlds ED3R is better, what that hangs on,
             and the second calibration
+  compare   the record beside that of a search made again (--again DIR): which points both flew, whether those measured the same,
+            and how far the conclusions agree
   fresh     RBS in a run of other seeds (--run DIR: of sweeps/rbs.yaml; --warmup DIR: of sweeps/default_world.yaml) beside the paper's
             twelve quantities
 Without a STEP: waves and freeze. Each continues where it stopped; the same code gives the same record.
@@ -35,7 +37,7 @@ WAVES = ((140, 112, 8, "wide"), (100, 168, 8, "wide"), (60, 336, 12, "wide"), (2
          (8, 2000, 60, "most equivalent"))
 JUDGING = (6, 10)  # of these waves worlds are kept, and of the last of them the default
 SEED = 20261128
-STEPS = ("waves", "freeze", "check", "predict", "fresh")
+STEPS = ("waves", "freeze", "check", "compare", "predict", "fresh")
 CHECKED_POINTS = 3  # of each wave
 
 
@@ -92,7 +94,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--again", metavar="DIR", type=pathlib.Path,
                         help="search from nothing in DIR, which holds record.csv then; freezes nothing")
-    parser.add_argument("steps", nargs="*", metavar="STEP", help="waves, freeze, check, predict or fresh; default: waves and freeze")
+    parser.add_argument("steps", nargs="*", metavar="STEP", help="waves, freeze, check, compare, predict or fresh; default: waves and freeze")
     parser.add_argument("--report", metavar="DIR", type=pathlib.Path, default=flights.ROOT / "results/matched",
                         help="of what predict reads; default: results/matched")
     parser.add_argument("--run", metavar="DIR", type=pathlib.Path, help="what fresh reads, default results/runs/rbs; or predict, of which the "
@@ -116,6 +118,9 @@ def main():
     if "fresh" in steps:
         from calibration import fresh
         print(fresh.table(options.run or flights.ROOT / "results/runs/rbs", options.warmup), end="")
+    if "compare" in steps:
+        from calibration import twice
+        return 0 if twice.compare(record.read(FOLDER / "record.csv"), search.rows, JUDGING) else 1
     if "check" in steps:
         from calibration import check
         faults = check.check(search, WAVES, SEED, CHECKED_POINTS)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <future>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -99,12 +100,11 @@ nlohmann::ordered_json JsonOf(const variants::VariantStudy& study, const std::ve
 }
 
 // What made the runs, by their labels.
-nlohmann::ordered_json ManifestOf(const std::vector<std::string>& dirs,
-                                  const std::vector<std::string>& labels) {
-  nlohmann::ordered_json runs = nlohmann::ordered_json::object();
-  for (std::size_t i = 0; i < dirs.size(); ++i)
-    runs[labels[i]] = report::ManifestJson(report::ReadProvenance(dirs[i]));
-  return runs;
+nlohmann::ordered_json ManifestOf(const std::vector<report::ComparedRun>& runs) {
+  nlohmann::ordered_json manifest = nlohmann::ordered_json::object();
+  for (const report::ComparedRun& run : runs)
+    manifest[run.label] = report::ManifestJson(report::ReadProvenance(run.dir, run.digest));
+  return manifest;
 }
 
 void WritePage(const std::vector<report::ComparedRun>& runs, const variants::VariantStudy& study,
@@ -139,7 +139,7 @@ int Compare(const Options& options) {
           fmt::format("{}: two of the runs are in folders called '{}'; their names must differ", dir, label));
     labels.push_back(label);
     store::ResultReader reader(dir);
-    reader.CheckWhole();
+    std::future<std::string> digest = report::CheckWhole(dir);
     const report::RunResults run = report::LoadRun(dir);
     seeds.insert(reader.Layout().seed);
     const Fingerprints inputs = reader.StoredRecipe().inputs;
@@ -150,7 +150,7 @@ int Compare(const Options& options) {
       throw UserError(fmt::format("{}: has variants of its own; 'ed3r report {}' compares them", dir, dir));
     departures[label] = report::ReadDepartures(reader)[""];
     for (metrics::ArmData& arm : variants::AsVariant(run.arms, label)) arms.push_back(std::move(arm));
-    runs.push_back({label, dir, run});
+    runs.push_back({label, dir, digest.get(), run});
   }
   std::vector<std::string> notes = DepartureLines(departures, labels, options.claims);
   variants::VariantStudy study = variants::CompareVariants(
@@ -168,7 +168,7 @@ int Compare(const Options& options) {
     WriteFile(out / "compare.txt", text);
     WriteFile(out / "differences.csv", variants::DifferenceCsv(study));
     WriteFile(out / "verdicts.csv", variants::VariantVerdictCsv(study));
-    WriteFile(out / "manifest.json", ManifestOf(options.dirs, labels).dump(2) + "\n");
+    WriteFile(out / "manifest.json", ManifestOf(runs).dump(2) + "\n");
     WritePage(runs, study, notes, options);
   }
   fmt::print("{}", options.json ? JsonOf(study, departure_lines, other_contents).dump(2) + "\n" : text);

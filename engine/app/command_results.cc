@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -125,12 +126,13 @@ struct ReportOptions {
 int MakeReportOf(const ReportOptions& options) {
   const GatheredShards run(options.dir);
   store::ResultReader reader(run.dir());
-  reader.CheckWhole();  // before anything is written
+  std::future<std::string> digest = report::CheckWhole(run.dir());
   const report::RunResults results = report::LoadRun(run.dir());
   const report::Report report = report::MakeReport(
       results, report::ReadDepartures(reader),
       options.claims ? report::Judging::kEverything : report::Judging::kWhatThePaperFlew, options.variant);
   report::FolderOptions folder{.dir = run.dir(),
+                               .digest = digest.get(),  // nothing of a damaged run is written
                                .out = options.out,
                                .figures = !options.no_figures,
                                .force = options.force,

@@ -22,6 +22,9 @@
 namespace ed3r::mission {
 namespace {
 
+// Room for the timesteps of all but one mission in a thousand, so that flying on allocates nothing.
+constexpr std::size_t kUsualTimesteps = 96;
+
 std::unique_ptr<perception::Sensor> SensorOf(const MissionTask& task, const Scenario& scenario) {
   const perception::SensorScenario seen{scenario.site, task.seed, task.scenario};
   if (task.config.perception.tier == PerceptionTier::kProfile)
@@ -86,6 +89,7 @@ Mission::Mission(const MissionTask& task)
       sensor_(SensorOf(task, scenario_)),
       battery_j_(config_.robot.BatteryJ()) {
   flight_.SetTrace(task.trace);
+  steps_.reserve(kUsualTimesteps);
 }
 
 agents::AgentContext Mission::Agents() const {

@@ -22,6 +22,12 @@ std::size_t ShareOf(std::size_t missions, double share) {
 
 }  // namespace
 
+void DataSet::Reserve(std::size_t rows) {
+  inputs.reserve(rows * static_cast<std::size_t>(columns));
+  targets.reserve(rows);
+  missions.reserve(rows);
+}
+
 void DataSet::Add(std::span<const float> row, float target, std::int64_t mission) {
   ED3R_CHECK(row.size() == static_cast<std::size_t>(columns), fmt::format("{} values", row.size()));
   for (const float value : row)

@@ -24,6 +24,8 @@ struct DataSet {
     return std::span(inputs).subspan(r * static_cast<std::size_t>(columns),
                                      static_cast<std::size_t>(columns));
   }
+  // Makes room for so many rows in all.
+  void Reserve(std::size_t rows);
   // `row` has `columns` values. A value that is not finite is an InternalError.
   void Add(std::span<const float> row, float target, std::int64_t mission);
 };

@@ -50,6 +50,11 @@ Samples ReadSamples(store::ResultReader& reader, const sweep::SweepPlan& plan, c
       plan.stages[static_cast<std::size_t>(part.stage)].arms[static_cast<std::size_t>(part.arm)].config;
   Samples samples;
   reader.NeedTimesteps(part.stage);
+  std::int64_t rows = 0;
+  reader.ForEachMission(part.stage, part.arm, part.first, part.end, store::Steps::kSkip,
+                        [&](const store::StoredMission& mission) { rows += mission.record.timesteps; });
+  samples.rc.Reserve(static_cast<std::size_t>(rows));
+  samples.robot.Reserve(static_cast<std::size_t>(rows));
   reader.ForEachMission(part.stage, part.arm, part.first, part.end, store::Steps::kLoad,
                         [&](const store::StoredMission& mission) {
                           mission::AppendSamples(mission.record, mission.id.mission, flown, agents,

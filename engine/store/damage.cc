@@ -33,11 +33,15 @@ void AddStrayFailures(Connection& database, const RunLayout& layout, std::vector
 
 }  // namespace
 
-std::vector<DamagedMission> FindDamage(Connection& database, const RunLayout& layout) {
+std::vector<DamagedMission> FindDamage(Connection& database, const RunLayout& layout,
+                                       const std::function<void(const MissionCursor&)>& on_whole) {
   std::vector<DamagedMission> found;
   MissionCursor cursor(database, layout, "", Steps::kLoad);
   while (cursor.Next())
-    if (cursor.Damaged()) found.push_back(cursor.damage());
+    if (cursor.Damaged())
+      found.push_back(cursor.damage());
+    else if (on_whole)
+      on_whole(cursor);
   AddLonelyTimesteps(database, layout, found);
   AddStrayFailures(database, layout, found);
   return found;

@@ -1,6 +1,7 @@
 // What is wrong with the missions of a file, and how it is taken out. Within a transaction of the caller's.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "engine/store/layout.h"
@@ -10,8 +11,10 @@
 namespace ed3r::store {
 
 // Every mission that does not match its checksums or is not in the plan, timesteps without a mission, and failures that
-// are not in the plan; by key. Reads everything.
-std::vector<DamagedMission> FindDamage(Connection& database, const RunLayout& layout);
+// are not in the plan; by key. Reads everything. `on_whole` is called for each mission that is whole, in canonical order,
+// with its timesteps loaded.
+std::vector<DamagedMission> FindDamage(Connection& database, const RunLayout& layout,
+                                       const std::function<void(const MissionCursor&)>& on_whole = {});
 
 // Deletes all that the file holds of these missions, so that they count as missing.
 void RemoveMissions(Connection& database, const std::vector<DamagedMission>& missions);

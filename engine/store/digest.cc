@@ -9,16 +9,16 @@
 namespace ed3r::store {
 namespace {
 
-std::string BytesOfFormat1(const ResultReader& reader, const StoredMission& mission) {
-  const RunLayout::Stage& stage = reader.Layout().stages[static_cast<std::size_t>(mission.id.stage)];
+std::string BytesOfFormat1(const ResultReader& reader, const sweep::RunId& id,
+                           const mission::MissionRecord& record) {
+  const RunLayout::Stage& stage = reader.Layout().stages[static_cast<std::size_t>(id.stage)];
   std::string bytes;
   AppendText(bytes, stage.name);
-  AppendText(bytes, stage.arms[static_cast<std::size_t>(mission.id.arm)].name);
-  AppendInt(bytes, mission.id.mission);
-  reader.Tables().missions().Append(bytes, mission.record);
-  AppendInt(bytes, static_cast<std::int64_t>(mission.record.steps.size()));
-  for (const mission::TimestepRecord& step : mission.record.steps)
-    reader.Tables().timesteps().Append(bytes, step);
+  AppendText(bytes, stage.arms[static_cast<std::size_t>(id.arm)].name);
+  AppendInt(bytes, id.mission);
+  reader.Tables().missions().Append(bytes, record);
+  AppendInt(bytes, static_cast<std::int64_t>(record.steps.size()));
+  for (const mission::TimestepRecord& step : record.steps) reader.Tables().timesteps().Append(bytes, step);
   return bytes;
 }
 
@@ -38,19 +38,27 @@ std::string DigestOf(const mission::MissionRecord& record) {
   return sha.Hex();
 }
 
-std::string DigestOf(ResultReader& reader) {
+ResultDigest::ResultDigest(const ResultReader& reader) : reader_(reader) {
   std::string header;
-  Sha256 sha;
   AppendText(header, fmt::format("ed3r results {}", reader.Format()));
   if (reader.Format() == 1) {
     AppendText(header, reader.Tables().missions().names());
     AppendText(header, reader.Tables().timesteps().names());
   }
-  sha.Update(header);
+  sha_.Update(header);
+}
+
+void ResultDigest::Add(const sweep::RunId& id, const mission::MissionRecord& record,
+                       const std::string& checksum) {
+  sha_.Update(reader_.Format() == 1 ? BytesOfFormat1(reader_, id, record) : checksum);
+}
+
+std::string DigestOf(ResultReader& reader) {
+  ResultDigest digest(reader);
   reader.ForEachMission(Steps::kLoad, [&](const StoredMission& mission) {
-    sha.Update(reader.Format() == 1 ? BytesOfFormat1(reader, mission) : mission.checksum);
+    digest.Add(mission.id, mission.record, mission.checksum);
   });
-  return sha.Hex();
+  return digest.Hex();
 }
 
 }  // namespace ed3r::store

@@ -4,7 +4,9 @@
 
 #include <string>
 
+#include "engine/core/sha256.h"
 #include "engine/mission/record.h"
+#include "engine/sweep/plan.h"
 
 namespace ed3r::store {
 
@@ -17,6 +19,21 @@ std::string CanonicalBytes(const mission::MissionRecord& record);
 
 // SHA-256 of CanonicalBytes in hexadecimal.
 std::string DigestOf(const mission::MissionRecord& record);
+
+// The digest of a store, of its missions in canonical order.
+class ResultDigest {
+ public:
+  // `reader` must outlive it.
+  explicit ResultDigest(const ResultReader& reader);
+  // With its timesteps; `checksum` is "" in files of format 1.
+  void Add(const sweep::RunId& id, const mission::MissionRecord& record, const std::string& checksum);
+  // The last call.
+  std::string Hex() { return sha_.Hex(); }
+
+ private:
+  const ResultReader& reader_;
+  Sha256 sha_;
+};
 
 // SHA-256 of everything stored: the format's name; then each finished mission's checksum (checksums.h, hexadecimal), by
 // stage, arm and mission, each compared with what it is the checksum of. Failures, sessions and timings are not part of

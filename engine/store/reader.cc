@@ -155,9 +155,15 @@ StoredMission ResultReader::LoadMission(const sweep::RunId& id) {
   return *loaded;
 }
 
-void ResultReader::CheckWhole() {
-  const std::vector<DamagedMission> damage = FindDamage();
+std::string ResultReader::CheckWhole() {
+  const Transaction moment(database_, Transaction::Kind::kRead);
+  ResultDigest digest(*this);
+  const std::vector<DamagedMission> damage =
+      ed3r::store::FindDamage(database_, layout_, [&](const MissionCursor& mission) {
+        digest.Add(mission.Checked(), mission.record(), mission.checksum());
+      });
   if (!damage.empty()) throw UserError(DamageText(database_.file(), damage.front()));
+  return digest.Hex();
 }
 
 std::vector<DamagedMission> ResultReader::FindDamage() {

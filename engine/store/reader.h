@@ -93,8 +93,9 @@ class ResultReader {
   // With timesteps. UserError when it is not in the plan, or not stored (yet, or because it failed).
   StoredMission LoadMission(const sweep::RunId& id);
 
-  // UserError that names the first damaged mission of all that is stored.
-  void CheckWhole();
+  // The digest (digest.h) of all that is stored, of which everything has been compared: UserError names the first damaged
+  // mission.
+  std::string CheckWhole();
 
   // Every mission that does not match its checksums or is not in the plan. Reads everything.
   std::vector<DamagedMission> FindDamage();

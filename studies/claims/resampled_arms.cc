@@ -177,22 +177,25 @@ void ResampledArms::Resample(const std::vector<View>& views) {
   std::vector<int> group_of_unit;
   for (const auto& [scenario, group] : group_of_scenario_) group_of_unit.push_back(group);
   const statistics::Resampler resampler(group_of_unit, networks_);
+  std::vector<std::vector<statistics::Resampled*>> cells;  // of each view, by its metrics
+  for (const View& view : views) {
+    cells.emplace_back();
+    for (const std::size_t metric : view.metrics) cells.back().push_back(&cells_.at({view.name, metric}));
+  }
   std::vector<int> missions, networks;
   std::vector<double> totals;
   for (int b = 0; b < kResamples; ++b) {
     resampler.DrawMissions(b, missions);
     if (networks_ > 1) resampler.DrawNetworks(b, networks);
-    for (const View& view : views) {
-      const auto cell = [&](std::size_t m) -> statistics::Resampled& {
-        return cells_.at({view.name, view.metrics[m]});
-      };
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      const View& view = views[v];
       view.Sum([&](std::size_t i) { return missions[static_cast<std::size_t>(view.unit[i])]; }, totals);
       for (std::size_t m = 0; m < view.metrics.size(); ++m)
-        cell(m).missions.push_back(view.ValueOf(m, totals));
+        cells[v][m]->missions.push_back(view.ValueOf(m, totals));
       if (networks_ < 2) continue;
       view.Sum([&](std::size_t i) { return networks[static_cast<std::size_t>(view.group[i])]; }, totals);
       for (std::size_t m = 0; m < view.metrics.size(); ++m)
-        cell(m).networks.push_back(view.ValueOf(m, totals));
+        cells[v][m]->networks.push_back(view.ValueOf(m, totals));
     }
   }
 }
@@ -213,9 +216,16 @@ statistics::Resampled ResampledArms::Of(const Quantity& quantity) const {
     result.network_count = std::max(result.network_count, cells_.at(cell).network_count);
   result.value = ValueOf(quantity, [&](const Cell& cell) { return Value(cell); });
   const auto all = [&](std::vector<double> statistics::Resampled::*level, std::vector<double>& values) {
+    // Looked up once: a cell is known by its place in `quantity`.
+    std::vector<std::pair<const Cell*, const std::vector<double>*>> known;
+    const auto resamples_of = [&](const Cell& cell) -> const std::vector<double>& {
+      for (const auto& [place, resamples] : known)
+        if (place == &cell) return *resamples;
+      return *known.emplace_back(&cell, &(cells_.at(cell).*level)).second;
+    };
     for (std::size_t b = 0; b < static_cast<std::size_t>(kResamples); ++b)
       values.push_back(ValueOf(quantity, [&](const Cell& cell) {
-        const std::vector<double>& resamples = cells_.at(cell).*level;
+        const std::vector<double>& resamples = resamples_of(cell);
         return resamples.empty() ? kNone : resamples[b];
       }));
   };

@@ -111,7 +111,7 @@ Json ComparePageData(const std::vector<ComparedRun>& runs, const variants::Varia
   report.name = Names(runs);
   report.told = together.metrics;
   if (!study.verdicts.empty()) report.claims = study.verdicts.front();
-  const Provenance provenance = ReadProvenance(runs.front().dir);
+  const Provenance provenance = ReadProvenance(runs.front().dir, runs.front().digest);
   Json data = MakePageData({.report = report,
                             .provenance = provenance,
                             .missions = together.missions,

@@ -11,6 +11,7 @@ namespace ed3r::report {
 
 struct ComparedRun {
   std::string label, dir;
+  std::string digest;  // of what it holds
   RunResults results;  // without variants
 };
 

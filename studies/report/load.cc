@@ -62,6 +62,10 @@ RunResults LoadRun(const std::string& dir) {
   return results;
 }
 
+std::future<std::string> CheckWhole(const std::string& dir) {
+  return std::async(std::launch::async, [dir] { return store::ResultReader(dir).CheckWhole(); });
+}
+
 double HalfWidth(const std::string& dir, int stage, int arm, int missions, const std::string& metric) {
   store::ResultReader reader(dir);
   const store::RunLayout::Stage& flown = reader.Layout().stages.at(static_cast<std::size_t>(stage));

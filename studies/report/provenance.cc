@@ -6,7 +6,6 @@
 
 #include "engine/core/file.h"
 #include "engine/core/utf8.h"
-#include "engine/store/digest.h"
 #include "engine/store/reader.h"
 #include "engine/store/recipe.h"
 
@@ -51,7 +50,7 @@ std::string QuestionOf(const std::map<std::string, std::string>& notes) {
 
 }  // namespace
 
-Provenance ReadProvenance(const std::string& dir) {
+Provenance ReadProvenance(const std::string& dir, const std::string& digest) {
   store::ResultReader reader(dir);
   Provenance provenance;
   provenance.dir = dir;
@@ -79,7 +78,7 @@ Provenance ReadProvenance(const std::string& dir) {
     provenance.planned += arm.planned, provenance.stored += arm.done, provenance.failed += arm.failed;
     provenance.simulated_h += arm.simulated_s / 3600, provenance.wall_h += arm.wall_s / 3600;
   }
-  provenance.digest = store::DigestOf(reader);
+  provenance.digest = digest;
   return provenance;
 }
 

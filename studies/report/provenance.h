@@ -30,8 +30,8 @@ struct Provenance {
   std::vector<Session> sessions;
 };
 
-// Reads the store in `dir`; the digest takes a pass over all timesteps. Throws UserError where there is no store.
-Provenance ReadProvenance(const std::string& dir);
+// Reads the store in `dir`, whose `digest` is known (ResultReader::CheckWhole). Throws UserError where there is no store.
+Provenance ReadProvenance(const std::string& dir, const std::string& digest);
 
 // What made the results: {"sweep", "command", "seed", "code", "commit", "digest", "missions", "failed", "simulated_h",
 // "wall_h", "inputs", "machine": the last session's notes}. Without hosts and times of day.

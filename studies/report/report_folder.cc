@@ -139,7 +139,7 @@ FolderResult WriteReportFolder(const Report& report, const RunResults& results,
                                const FolderOptions& options) {
   const fs::path base(options.out), figures = base / "figures";
   if (!options.force) CheckFolder(base);
-  const Provenance provenance = ReadProvenance(options.dir);
+  const Provenance provenance = ReadProvenance(options.dir, options.digest);
   MakeFolder(base);
   for (const fs::path& folder : {base, base / "tables", figures}) RemoveLeftovers(folder);
   // First: a report that did not come to its end is known as one.

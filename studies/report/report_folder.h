@@ -9,6 +9,7 @@ namespace ed3r::report {
 
 struct FolderOptions {
   std::string dir;      // of the run
+  std::string digest;   // of what it holds (ResultReader::CheckWhole)
   std::string out;      // the report's folder, made where it is missing
   bool figures = true;  // draw them; their data are written in any case
   bool force = false;   // write into a folder that holds other things than a report
