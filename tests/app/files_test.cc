@@ -141,6 +141,9 @@ TEST_F(StoredFilesTest, AFileThatMayNotGrowIsAnErrorOfOneLine) {
 // Commits that a killed writer left beside the store can be read only with a -shm file.
 TEST_F(StoredFilesTest, AStoreThatThisUserMayNotReadIsNamedWithTheReason) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can become a user who may not";
+#ifdef ED3R_COVERAGE
+  GTEST_SKIP() << "another user may not write this build's counts, and is told so in many lines";
+#endif
   const std::string store = (scratch_ / "run" / "results.sqlite").string();
   const std::string nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups ";
   if (std::system((nobody + ED3R_BINARY " --version >/dev/null 2>&1").c_str()) != 0)
