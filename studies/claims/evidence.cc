@@ -153,6 +153,7 @@ Evidence WeighNumber(const paper::Claim& claim, const Quantity& quantity, const 
   const statistics::Resampled number = arms.Of(quantity);
   const statistics::Uncertainty uncertainty = statistics::UncertaintyOf(number);
   evidence.own_sd = uncertainty.sd_missions;
+  evidence.missions = number.units;
   evidence.paper_sd = uncertainty.sd_missions * arms.ToPaperSize(CellsOf(quantity));
   if (IsPlainCell(quantity) && !paper::IsP85Name(quantity.cell.arm)) {
     const metrics::MetricValue& ours = arms.TableValue(quantity.cell);

@@ -1,6 +1,7 @@
 // What a run says about one claim, before any verdict: internal to studies/claims.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -23,7 +24,8 @@ struct Evidence {
   bool sizes_agree = false;  // orders: the paper prints every difference, and all are equivalent to ours
   // Standard error over missions, as many as flew and as many as the paper's; not of orders.
   double own_sd = kNoNumber, paper_sd = kNoNumber;
-  std::string detail;  // orders: the least certain part
+  std::int64_t missions = 0;  // of the arm with the fewest; not of orders
+  std::string detail;         // orders: the least certain part
 };
 
 // An order or similarity. All arms must be there.

@@ -28,6 +28,21 @@ struct Scale {
   }
 };
 
+// What one network's missions say of its share: half a mission is added on either side, as a network that found all of 28
+// fires is not one that finds every fire.
+struct NetworkValue {
+  double value = 0, variance = 0;  // on the scale; NaN where the variance is not known
+};
+
+NetworkValue ValueOf(const Judgement& network, const Scale& scale) {
+  if (!scale.logit || network.missions == 0)
+    return {scale.To(network.ours), std::pow(scale.SlopeAt(network.ours) * network.own_sd, 2)};
+  const auto missions = static_cast<double>(network.missions);
+  const double share = (network.ours / 100.0 * missions + 0.5) / (missions + 1.0), pct = 100.0 * share;
+  if (network.own_sd == 0.0) return {scale.To(pct), 1.0 / ((missions + 1.0) * share * (1.0 - share))};
+  return {scale.To(pct), std::pow(scale.SlopeAt(pct) * network.own_sd, 2)};
+}
+
 double Mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -41,10 +56,10 @@ Luck LuckOf(const JudgedClaim& judged) {
   std::vector<double> values, own_variances, paper_variances;
   for (const Judgement& network : judged.by_network) {
     if (std::isnan(network.ours)) continue;
-    const double slope = scale.SlopeAt(network.ours);
-    values.push_back(scale.To(network.ours));
-    if (std::isnan(network.own_sd)) continue;
-    own_variances.push_back(std::pow(slope * network.own_sd, 2));
+    const NetworkValue known = ValueOf(network, scale);
+    values.push_back(known.value);
+    if (std::isnan(known.variance)) continue;
+    own_variances.push_back(known.variance);
     paper_variances.push_back(std::pow(scale.SlopeAt(paper->value) * network.paper_sd, 2));
   }
   if (values.size() < 2 || !judged.asks_networks) return Luck::kUnknown;

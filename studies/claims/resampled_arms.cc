@@ -27,6 +27,11 @@ std::set<std::int64_t> NetworksOf(const metrics::ArmData& arm) {
   return networks;
 }
 
+std::int64_t TrainedNetworksOf(const metrics::ArmData& arm) {
+  const std::set<std::int64_t> networks = NetworksOf(arm);
+  return std::count_if(networks.begin(), networks.end(), [](std::int64_t network) { return network >= 0; });
+}
+
 const metrics::ArmData* FindArm(const std::vector<const metrics::ArmData*>& arms, std::string_view name) {
   for (const metrics::ArmData* arm : arms)
     if (arm->name == name || paper::P85Name(arm->name) == name) return arm;
@@ -126,9 +131,15 @@ ResampledArms::View ResampledArms::MakeView(const std::string& name,
   View view{name, arm.name != name, {}, {}, {}, {}};
   const metrics::ArmMetrics values = view.is_p85 ? metrics::ComputeP85(arm) : metrics::ComputeMetrics(arm);
   const metrics::WorstErrors worst = metrics::WorstErrorsOf(arm.missions);
+  std::set<int> groups;
+  for (const mission::MissionRecord& mission : arm.missions)
+    groups.insert(group_of_scenario_.at(mission.scenario));
   for (const std::size_t metric : metrics) {
     statistics::Resampled& cell = cells_[{name, metric}];
     cell.value = values.values[metric].value;
+    cell.units = static_cast<std::int64_t>(arm.missions.size());
+    cell.strata = static_cast<std::int64_t>(groups.size());
+    cell.trained = TrainedNetworksOf(arm);
     cell.network_count = NetworksOf(arm).size() > 1 ? networks_ : 1;
     if (!IsTotals(metrics::MetricDefinitions()[metric].estimate)) continue;
     view.metrics.push_back(metric);
@@ -212,9 +223,17 @@ std::vector<std::string> ResampledArms::Missing(const std::vector<Cell>& cells) 
 
 statistics::Resampled ResampledArms::Of(const Quantity& quantity) const {
   statistics::Resampled result;
-  for (const Cell& cell : CellsOf(quantity))
-    result.network_count = std::max(result.network_count, cells_.at(cell).network_count);
+  bool as_many = true;
+  for (const Cell& cell : CellsOf(quantity)) {
+    const statistics::Resampled& known = cells_.at(cell);
+    as_many = as_many && (known.trained == 0 || result.trained == 0 || known.trained == result.trained);
+    result.trained = std::max(result.trained, known.trained);
+    result.network_count = std::max(result.network_count, known.network_count);
+    if (result.units == 0 || known.units - known.strata < result.units - result.strata)
+      result.units = known.units, result.strata = known.strata;
+  }
   result.value = ValueOf(quantity, [&](const Cell& cell) { return Value(cell); });
+  if (!as_many) return result;  // the arms' networks cannot be drawn together: nothing is known of chance
   const auto all = [&](std::vector<double> statistics::Resampled::*level, std::vector<double>& values) {
     // Looked up once: a cell is known by its place in `quantity`.
     std::vector<std::pair<const Cell*, const std::vector<double>*>> known;
@@ -240,8 +259,14 @@ const metrics::MetricValue& ResampledArms::TableValue(const Cell& cell) const {
 
 double ResampledArms::ToPaperSize(const std::vector<Cell>& cells) const {
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  for (const Cell& cell : cells) fewest = std::min(fewest, FindArm(arms_, cell.arm)->missions.size());
-  return cells.empty() ? kNone : std::sqrt(static_cast<double>(fewest) / kPaperMissions);
+  bool groups = false;
+  for (const Cell& cell : cells) {
+    fewest = std::min(fewest, FindArm(arms_, cell.arm)->missions.size());
+    groups = groups || paper::IsP85Name(cell.arm);
+  }
+  if (cells.empty()) return kNone;
+  return groups ? std::sqrt(static_cast<double>(metrics::SizeOfP85(fewest)) / kPaperMissionsInP85)
+                : std::sqrt(static_cast<double>(fewest) / kPaperMissions);
 }
 
 std::vector<metrics::ArmData> ResampledArms::FlownBy(int network) const {

@@ -33,6 +33,7 @@ class ResampledArms {
 
   double Value(const Cell& cell) const { return cells_.at(cell).value; }
   const statistics::Resampled& At(const Cell& cell) const { return cells_.at(cell); }
+  // Without resamples where arms of it flew different numbers of networks.
   statistics::Resampled Of(const Quantity& quantity) const;
 
   // As ComputeMetrics gives it, for the arms themselves; P85 groups have none (their interval must know that
@@ -40,7 +41,7 @@ class ResampledArms {
   const metrics::MetricValue& TableValue(const Cell& cell) const;
 
   // Turns a standard error over the missions at hand into one over as many as the paper flew: of the arm of `cells` with the
-  // fewest. (A P85 group is the same share of either.)
+  // fewest; of a P85 group over as many as the paper's seems to have had.
   double ToPaperSize(const std::vector<Cell>& cells) const;
 
   int networks() const { return networks_; }                     // 1 where none or one flew

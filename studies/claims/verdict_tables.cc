@@ -167,7 +167,9 @@ constexpr const char* kNetworksNote =
     "missions "
     "of each network alone, {} (too few of its missions).";
 constexpr const char* kTurnsNote =
-    "Arms took turns among their networks differently: they are paired by scenario only.";
+    "Arms took turns among their networks differently: they are paired by scenario only. Nothing that "
+    "compares arms of different "
+    "numbers of networks is decided.";
 constexpr const char* kOneNetworkNote =
     "Each arm that asks a network flew with one: its intervals and p values are over missions alone and say "
     "nothing "

@@ -216,6 +216,7 @@ class Round {
     judged.paper = evidence.paper;
     judged.p = evidence.p_for, judged.p_against = evidence.p_against;
     judged.own_sd = evidence.own_sd, judged.paper_sd = evidence.paper_sd;
+    judged.missions = evidence.missions;
     if (claim.kind == "order")
       DecideOrder(evidence, claim.tolerance > 0, judged);
     else if (claim.kind == "ratio")

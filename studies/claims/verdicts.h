@@ -77,7 +77,8 @@ struct Judgement {
   // Standard error of ours over the missions at hand, and over as many as the paper flew; the luck of training is in neither.
   double own_sd = std::numeric_limits<double>::quiet_NaN();
   double paper_sd = std::numeric_limits<double>::quiet_NaN();
-  std::string why;  // one sentence without a full stop
+  std::int64_t missions = 0;  // of the arm with the fewest; 0 where nothing rests on missions
+  std::string why;            // one sentence without a full stop
 };
 
 // Whether the luck of training may explain a number that differs (studies/claims/luck.h).

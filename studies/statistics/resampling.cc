@@ -32,6 +32,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 6;  // any; fixed, so that a report is the same every time
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNormal95 = 1.959963984540054;
 
 enum Level : std::uint32_t { kMissions = 0, kNetworks = 1 };
 
@@ -44,6 +45,8 @@ std::vector<double> Known(const std::vector<double>& values) {
 }
 
 double StandardDeviation(const std::vector<double>& values) {
+  // Their mean would round.
+  if (std::all_of(values.begin(), values.end(), [&](double x) { return x == values.front(); })) return 0;
   double mean = 0;
   for (const double value : values) mean += value / static_cast<double>(values.size());
   double squares = 0;
@@ -51,11 +54,27 @@ double StandardDeviation(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
-// The chance of a deviation this far above 0 or further, times two.
-template <class Distribution>
-double TwiceTail(const Distribution& distribution, double deviation, double sd) {
-  if (sd == 0) return deviation > 0 ? 0 : 1;
-  return std::min(1.0, 2 * boost::math::cdf(boost::math::complement(distribution, deviation / sd)));
+// Of the missions: infinite where their number is not told.
+double DegreesOf(const Resampled& number) {
+  return number.units == 0 ? std::numeric_limits<double>::infinity()
+                           : static_cast<double>(number.units - number.strata);
+}
+
+// What the standard deviation of the resamples is too small by.
+double CorrectionOf(const Resampled& number) {
+  return number.units == 0 ? 1.0 : std::sqrt(static_cast<double>(number.units) / DegreesOf(number));
+}
+
+// The sign test's p-value, doubled: all of `count` fell on one side.
+double SignP(double count) { return std::min(1.0, std::exp2(1.0 - count)); }
+
+// The chance of a deviation this far above 0 or further, times two; `count` things were drawn.
+double TwiceTail(double degrees, double deviation, double sd, double count) {
+  if (sd == 0) return deviation > 0 ? SignP(count) : 1;
+  const auto twice = [&](const auto& distribution) {
+    return std::min(1.0, 2 * boost::math::cdf(boost::math::complement(distribution, deviation / sd)));
+  };
+  return std::isinf(degrees) ? twice(boost::math::normal()) : twice(boost::math::students_t(degrees));
 }
 
 }  // namespace
@@ -87,13 +106,16 @@ void Resampler::DrawNetworks(int resample, std::vector<int>& count_of_group) con
 Uncertainty UncertaintyOf(const Resampled& number) {
   Uncertainty result{kNone, kNone, kNone, kNone};
   std::vector<double> missions = Known(number.missions);
-  if (missions.empty() || !std::isfinite(number.value)) return result;
-  result.sd_missions = StandardDeviation(missions);
+  if (missions.empty() || !std::isfinite(number.value) || DegreesOf(number) < 1) return result;
+  const double correction = CorrectionOf(number);
+  result.sd_missions = correction * StandardDeviation(missions);
   std::sort(missions.begin(), missions.end());
   const auto percentile = [&](double share) {
     return missions[static_cast<std::size_t>(std::llround(share * static_cast<double>(missions.size() - 1)))];
   };
-  result.lo = percentile(0.025), result.hi = percentile(0.975);
+  const double widened = number.units == 0 ? 1.0 : correction * StudentT95(DegreesOf(number)) / kNormal95;
+  result.lo = number.value + widened * (percentile(0.025) - number.value);
+  result.hi = number.value + widened * (percentile(0.975) - number.value);
   const std::vector<double> networks = Known(number.networks);
   if (number.network_count < 2 || networks.empty()) return result;
   const double count = number.network_count;
@@ -107,14 +129,15 @@ Uncertainty UncertaintyOf(const Resampled& number) {
 Sides TestAgainst(const Resampled& number, const Uncertainty& uncertainty, double threshold) {
   if (std::isnan(uncertainty.sd_missions)) return {1, 1};
   const double deviation = number.value - threshold;
-  const boost::math::normal normal;
-  Sides sides{TwiceTail(normal, deviation, uncertainty.sd_missions),
-              TwiceTail(normal, -deviation, uncertainty.sd_missions)};
-  if (std::isnan(uncertainty.sd_networks)) return sides;
-  const boost::math::students_t student(number.network_count - 1);
-  sides.above = std::max(sides.above, TwiceTail(student, deviation, uncertainty.sd_networks));
-  sides.below = std::max(sides.below, TwiceTail(student, -deviation, uncertainty.sd_networks));
-  return sides;
+  const double many = std::numeric_limits<double>::infinity();
+  const double units = number.units == 0 ? many : static_cast<double>(number.units);
+  const auto tail = [&](double towards) {
+    const double missions = TwiceTail(DegreesOf(number), towards, uncertainty.sd_missions, units);
+    if (std::isnan(uncertainty.sd_networks)) return missions;
+    // Networks that agree by accident say nothing that their missions do not.
+    return std::max(missions, TwiceTail(number.network_count - 1, towards, uncertainty.sd_networks, many));
+  };
+  return {tail(deviation), tail(-deviation)};
 }
 
 }  // namespace ed3r::statistics

@@ -10,6 +10,9 @@
 //   networks   as many networks as there are, with replacement, each with all of its scenarios: this holds the
 //              luck of training and, through the differing scenarios, the luck of missions too
 //
+// With few missions the first is too narrow likewise: n missions in G networks spread by the divisor n - G, and their
+// standard deviation is used with Student's t of n - G degrees. Where that is 0 nothing is known.
+//
 // With few networks the second is too narrow twice over: it spreads by the divisor G instead of G - 1, and
 // takes the spread of five numbers for known. Its standard deviation is scaled by sqrt(G / (G - 1)) and used
 // with Student's t of G - 1 degrees. And five networks can agree by accident, so an interval is never narrower
@@ -47,19 +50,23 @@ struct Resampled {
   double value = 0;
   std::vector<double> missions, networks;
   int network_count = 1;
+  // Of the arm with the fewest: its missions, and the networks within which they were drawn. 0 missions: not told, many.
+  std::int64_t units = 0, strata = 1;
+  std::int64_t trained = 0;  // networks that the arm flew; 0 where it asks none
 };
 
-// What chance leaves open. NaN where resamples are missing (under half of them gave a number).
+// What chance leaves open. NaN where resamples are missing (under half of them gave a number), or missions.
 struct Uncertainty {
-  double lo, hi;  // 95 %: percentiles over missions, Student's t over networks, whichever reaches further
+  double lo,
+      hi;  // 95 %: percentiles over missions, widened as above, Student's t over networks, whichever reaches further
   double sd_missions;  // standard deviations of the estimate
   double sd_networks;  // scaled as above; NaN with one network
 };
 Uncertainty UncertaintyOf(const Resampled& number);
 
 // p-values of "the number is above `threshold`" and "below": twice the one-sided ones (so that p < 0.05 goes
-// with a 95 % interval), normal over missions, Student's t over networks, the larger of both. 1 where
-// nothing is known.
+// with a 95 % interval), Student's t over missions (normal where their number is not told) and over networks, the larger of both.
+// Where all resamples are one number that tells nothing of the spread: then the sign test's, 2^(1 - n). 1 where nothing is known.
 struct Sides {
   double above, below;
 };

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "studies/metrics/definitions.h"
@@ -17,10 +19,14 @@ double ValueOf(const mission::MissionRecord& mission, const metrics::MetricDefin
   return metric.scale * metric.part(mission) / metric.whole(mission);
 }
 
-// What the scenarios that both flew say. A network's values are those of the pairs that it flew.
+using ByNetwork = std::map<std::int64_t, std::vector<double>>;
+
+// What the scenarios that both flew say. A network's values are those of the pairs that it flew; the differences stand twice, by
+// the networks of either arm.
 struct Pairs {
   std::vector<double> base, difference;
-  std::map<std::int64_t, std::vector<double>> base_by_network, other_by_network, difference_by_network;
+  ByNetwork base_by_network, other_by_network, difference_by_base, difference_by_other;
+  std::set<std::pair<std::int64_t, std::int64_t>> networks;  // that met
 };
 
 Pairs PairsOf(const metrics::ArmData& base, const metrics::ArmData& other,
@@ -34,11 +40,16 @@ Pairs PairsOf(const metrics::ArmData& base, const metrics::ArmData& other,
     const double before = ValueOf(mission, metric), after = ValueOf(*found->second, metric);
     pairs.base.push_back(before);
     pairs.difference.push_back(after - before);
-    if (mission.network >= 0) {
-      pairs.base_by_network[mission.network].push_back(before);
-      pairs.difference_by_network[mission.network].push_back(after - before);
+    const std::int64_t network = mission.network, other_network = found->second->network;
+    pairs.networks.insert({network, other_network});
+    if (network >= 0) {
+      pairs.base_by_network[network].push_back(before);
+      pairs.difference_by_base[network].push_back(after - before);
     }
-    if (found->second->network >= 0) pairs.other_by_network[found->second->network].push_back(after);
+    if (other_network >= 0) {
+      pairs.other_by_network[other_network].push_back(after);
+      pairs.difference_by_other[other_network].push_back(after - before);
+    }
   }
   return pairs;
 }
@@ -49,7 +60,7 @@ double Mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-std::vector<double> MeansOf(const std::map<std::int64_t, std::vector<double>>& by_network) {
+std::vector<double> MeansOf(const ByNetwork& by_network) {
   std::vector<double> means;
   for (const auto& [network, values] : by_network) means.push_back(Mean(values));
   return means;
@@ -83,11 +94,15 @@ Finding WelchFinding(const std::vector<double>& a, const std::vector<double>& b,
   return {{difference - half, difference + half}, statistics::StudentP(difference / std::sqrt(v), degrees)};
 }
 
-// Of the networks' luck; does not exist where one of the two flew fewer than two.
+// Of the networks' luck; does not exist where none flew, or a single one on either side.
 Finding NetworkFinding(const Pairs& pairs, double difference) {
   const std::vector<double> base = MeansOf(pairs.base_by_network), other = MeansOf(pairs.other_by_network);
-  if (base.size() < 2 || other.size() < 2) return {};
-  if (base.size() == other.size()) return FindingOf(MeansOf(pairs.difference_by_network));
+  if (base.size() == 1 || other.size() == 1 || (base.empty() && other.empty())) return {};
+  if (other.empty()) return FindingOf(MeansOf(pairs.difference_by_base));
+  if (base.empty()) return FindingOf(MeansOf(pairs.difference_by_other));
+  // Each network met one of the other side alone: what they share goes out of the differences.
+  if (pairs.networks.size() == base.size() && base.size() == other.size())
+    return FindingOf(MeansOf(pairs.difference_by_base));
   return WelchFinding(base, other, difference);
 }
 

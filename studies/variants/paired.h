@@ -13,9 +13,9 @@ namespace ed3r::variants {
 inline constexpr const char* kComparedMetrics[] = {"total_energy_kj", "msr_pct", "duration_mean_min"};
 
 // One metric of one arm minus the same of another: mean over scenarios that both flew, with a 95 % interval (Student's t) and
-// the p-value of "there is no difference" that goes with it. Where both flew the same number of trained networks, more than
-// one, the interval is at least as wide as t over the networks' own differences; where they flew different numbers, as Welch's
-// t between the two sets of networks; p is then the larger one. With a single network on either side the luck of training
+// the p-value of "there is no difference" that goes with it. Where trained networks flew, more than one, the interval is at least
+// as wide as t over the networks' own differences: of both arms where each network of one met one of the other alone, of the
+// one arm that has any; as Welch's t between the two sets of networks otherwise. p is then the larger one. With a single network on either side the luck of training
 // is in neither, and Certain() never holds. Where every pair differs by the same, p is that of the sign test, 2^(1 - pairs).
 struct PairedDifference {
   double base = 0.0;  // the metric's mean in the first arm, over the pairs

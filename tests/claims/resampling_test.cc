@@ -91,6 +91,31 @@ TEST(UncertaintyTest, OfFewResamplesByHand) {
   EXPECT_TRUE(std::isnan(statistics::UncertaintyOf({2.5, {4, 1, 3, 2}, {9, 11}, 1}).sd_networks));
 }
 
+// Four missions of one network: the spread is by n - 1, and t of 3 degrees reaches 3.182 where the normal does 1.960.
+TEST(UncertaintyTest, FewMissionsAreKnownLessWell) {
+  const statistics::Resampled many{10, Ramp(4), {}, 1};
+  statistics::Resampled four = many;
+  four.units = 4;
+  const statistics::Uncertainty wide = statistics::UncertaintyOf(four), u = statistics::UncertaintyOf(many);
+  EXPECT_NEAR(wide.sd_missions, u.sd_missions * std::sqrt(4.0 / 3.0), 1e-12);
+  EXPECT_NEAR(wide.hi - 10, 1.9 * std::sqrt(4.0 / 3.0) * 3.182446 / 1.959964, 1e-5);
+  EXPECT_NEAR(10 - wide.lo, wide.hi - 10, 1e-9);
+  EXPECT_NEAR(statistics::TestAgainst(four, wide, 10 - 3.182446 * wide.sd_missions).above, 0.05, 1e-6);
+  // 40 missions of 20 networks are known by 20 degrees.
+  statistics::Resampled twenty = many;
+  twenty.units = 40, twenty.strata = 20;
+  EXPECT_NEAR(statistics::UncertaintyOf(twenty).sd_missions, u.sd_missions * std::sqrt(2.0), 1e-12);
+}
+
+TEST(UncertaintyTest, OneMissionTellsNothing) {
+  statistics::Resampled one{-100, std::vector<double>(2000, -100.0), {}, 1};
+  one.units = 1;
+  const statistics::Uncertainty u = statistics::UncertaintyOf(one);
+  EXPECT_TRUE(std::isnan(u.lo) && std::isnan(u.hi) && std::isnan(u.sd_missions));
+  EXPECT_EQ(statistics::TestAgainst(one, u, 0).below, 1);
+  EXPECT_EQ(statistics::TestAgainst(one, u, 0).above, 1);
+}
+
 TEST(UncertaintyTest, HalfOfTheResamplesAreEnoughAndOneIsNot) {
   const double none = std::nan("");
   EXPECT_NEAR(statistics::UncertaintyOf({1, {1, none, 2, none}, {}, 1}).sd_missions, std::sqrt(0.5), 1e-12);
@@ -141,6 +166,10 @@ TEST(SidesTest, WithoutSpreadTheSignDecides) {
   EXPECT_EQ(statistics::TestAgainst(constant, u, 50).above, 0);
   EXPECT_EQ(statistics::TestAgainst(constant, u, 50).below, 1);
   EXPECT_EQ(statistics::TestAgainst(constant, u, 100).above, 1);
+  // Five missions that say the same: 2^-5 on this side by chance, twice.
+  statistics::Resampled five = constant;
+  five.units = 5;
+  EXPECT_DOUBLE_EQ(statistics::TestAgainst(five, statistics::UncertaintyOf(five), 50).above, 1.0 / 16);
 }
 
 }  // namespace

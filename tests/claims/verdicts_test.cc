@@ -250,7 +250,7 @@ TEST(VerdictsTest, ThePapersChanceInSharesIsThatOfItsOwnMissions) {
   const Judgement all = JudgeOne(Value("rbs", "msr_pct", "76.82", "%"), arms).all;
   EXPECT_NEAR(all.paper_sd, 100 * std::sqrt(0.7682 * 0.2318 / 850), 1e-9);
   const Judgement p85 = JudgeOne(Value("rbs-p85", "msr_pct", "73.44", "%"), arms).all;
-  EXPECT_NEAR(p85.paper_sd, 100 * std::sqrt(0.7344 * 0.2656 / 128), 1e-9);
+  EXPECT_NEAR(p85.paper_sd, 100 * std::sqrt(0.7344 * 0.2656 / 64), 1e-9);
   // No failure of ours wastes nothing; a tenth of the paper's energy was wasted all the same.
   const Judgement wasted = JudgeOne(Value("ed3r-75", "wer_pct", "10.26", "%"), arms).all;
   EXPECT_EQ(wasted.ours, 0);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "studies/statistics/intervals.h"
+#include "studies/variants/paired.h"
 #include "tests/claims/synthetic_run.h"
 
 namespace ed3r {
@@ -165,6 +166,36 @@ TEST(VariantsTest, DifferentNumbersOfNetworksAreComparedByWelch) {
   EXPECT_NEAR(width(two, five), width(first, second), 1e-9) << "whichever comes first";
   // Means 20, 24 and 20 .. 36: variances of their means 4 and 8, Welch's degrees 144 / (16 / 1 + 64 / 4) = 4.5.
   EXPECT_NEAR(width(two, five), 2.0 * statistics::StudentT95(4.5) * std::sqrt(12.0), 1e-9);
+}
+
+// Beside an arm that asks no network, the luck of the one that does is all the luck there is.
+TEST(VariantsTest, TheLuckOfOneSideIsInTheInterval) {
+  metrics::ArmData walk = FlownBy("rbs", 1, 20);
+  for (mission::MissionRecord& mission : walk.missions) mission.network = -1;
+  const metrics::ArmData trained = FlownBy("ed3r-75", 4, 21);
+  // Networks 1, 5, 9 and 13 kJ dearer: a mean of 7, a standard deviation of sqrt(80 / 3).
+  const double half = statistics::StudentT95(3) * std::sqrt(80.0 / 3.0 / 4.0);
+  for (const bool walk_first : {true, false}) {
+    const variants::PairedDifference energy = walk_first
+                                                  ? variants::DifferenceOf(walk, trained, "total_energy_kj")
+                                                  : variants::DifferenceOf(trained, walk, "total_energy_kj");
+    EXPECT_NEAR(energy.difference, walk_first ? 7.0 : -7.0, 1e-9);
+    EXPECT_NEAR(energy.hi - energy.lo, 2.0 * half, 1e-9);
+    EXPECT_NEAR(energy.p, statistics::StudentP(7.0 / std::sqrt(80.0 / 3.0 / 4.0), 3), 1e-9);
+    EXPECT_FALSE(energy.Certain());
+  }
+}
+
+// As many networks, that took turns otherwise: what they share cannot be taken out.
+TEST(VariantsTest, NetworksThatDidNotMeetOneToOneAreComparedByWelch) {
+  const metrics::ArmData base = FlownBy("ed3r-75@a", 2, 20);
+  metrics::ArmData other = FlownBy("ed3r-75@b", 2, 20);
+  for (std::size_t i = 0; i < other.missions.size(); ++i)
+    if (i % 4 < 2) other.missions[i].network = 1 - other.missions[i].network;
+  const variants::PairedDifference energy = variants::DifferenceOf(base, other, "total_energy_kj");
+  EXPECT_EQ(energy.base_networks, 2);
+  EXPECT_EQ(energy.networks, 2);
+  EXPECT_GT(energy.hi - energy.lo, 20.0) << "means 20 and 24 of the one, equal ones of the other";
 }
 
 TEST(VariantsTest, AStudyWithoutVariantsHasNone) {
