@@ -140,15 +140,16 @@ std::string Unmeasured(const ClaimStudy& study) {
 
 // Of the table, in sentences with {} for what a run has.
 constexpr const char* kRules =
-    "equivalent: ours is the paper's number within {:g} % of a size or {:g} points of a percentage, whatever "
-    "chance may have done "
-    "to either (95 %, the sampling of the paper's own missions included). imprecise: compatible with it, but "
-    "not known well "
-    "enough. differs: no chance explains the difference; or the opposite order holds. reproduced: an order "
-    "holds and so do "
-    "the sizes that the paper prints. direction holds: p < 0.05, another size. not decidable: an order "
-    "without p < 0.05 "
-    "either way.";
+    "equivalent: ours (the mean over our networks) is the paper's number within {:g} % of a size or {:g} "
+    "points of a percentage, "
+    "whatever chance may have done to either (95 %, the sampling of the paper's own missions included; the "
+    "luck of the one network "
+    "that it seems to have trained is not). imprecise: compatible with it, but not known well enough. "
+    "differs: the sampling of "
+    "missions and our networks does not explain the difference; or the opposite order holds. reproduced: an "
+    "order holds and so do the "
+    "sizes that the paper prints. direction holds: p < 0.05, another size. not decidable: an order without p "
+    "< 0.05 either way.";
 constexpr const char* kOrderNote =
     "An order shows the difference in its least certain part, + as claimed, and the paper's in the same "
     "part; "

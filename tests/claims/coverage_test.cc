@@ -57,6 +57,7 @@ statistics::Resampled Difference(const Study& study, const Design& design) {
   };
   statistics::Resampled result;
   result.network_count = design.networks;
+  result.units = static_cast<std::int64_t>(study.first.size()), result.strata = design.networks;
   result.value = difference([](std::size_t) { return 1; });
   for (int b = 0; b < design.resamples; ++b) {
     resampler.DrawMissions(b, counts);
