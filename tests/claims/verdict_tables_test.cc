@@ -117,6 +117,16 @@ TEST(VerdictTextTest, DifferencesThatTheLuckOfOneNetworkMayExplainAreMarked) {
   EXPECT_EQ(line_of(40, 0.01).find("(luck"), std::string::npos) << line_of(40, 0.01);
 }
 
+// Every network has the same chance of a false alarm, and some raise none in 28 missions by it: that is no luck of theirs.
+TEST(VerdictTextTest, NetworksWithoutAFailureAreNotTakenForPerfectOnes) {
+  const SyntheticDesign twenty{.missions = 560, .networks = 20, .places = 28};
+  const ClaimStudy study = JudgeClaims(
+      paper::PaperClaims(), std::vector<metrics::ArmData>{MakeArm({"ed3r-75", 20, 0.125}, twenty)});
+  const std::string line = LineOf(VerdictText(study), "C024");  // 1.41 %
+  EXPECT_NE(line.find("differs"), std::string::npos) << line;
+  EXPECT_EQ(line.find("(luck"), std::string::npos) << line;
+}
+
 TEST(VerdictTextTest, WhatIsNotThereTakesOneEntryPerReason) {
   const std::string text = VerdictText(Study());
   EXPECT_EQ(LineOf(text, "C027"), "");

@@ -197,6 +197,16 @@ TEST(VerdictsTest, TiesAreNotDecidable) {
   EXPECT_EQ(VerdictOf(Order("ed3r-75 ~ ecd2r", 0.5), {MakeArm({"ed3r-75", 20}), twin}), Verdict::kReproduced);
 }
 
+// What two networks' luck may do cannot be drawn together with that of five.
+TEST(VerdictsTest, ArmsOfDifferentNumbersOfNetworksAreNotDecided) {
+  const metrics::ArmData five = MakeArm({"ed3r-75", 20}), two = MakeArm({"ecd2r", 40}, {.networks = 2});
+  const Judgement judged = JudgeOne(Order("ed3r-75 < ecd2r"), {five, two}).all;
+  EXPECT_EQ(judged.verdict, Verdict::kNotDecidable);
+  EXPECT_EQ(judged.p, 1);
+  const metrics::ArmData as_many = MakeArm({"ecd2r", 40});
+  EXPECT_NE(JudgeOne(Order("ed3r-75 < ecd2r"), {five, as_many}).all.verdict, Verdict::kNotDecidable);
+}
+
 TEST(VerdictsTest, Similarities) {
   const std::vector<metrics::ArmData> arms = ThreeArms();
   EXPECT_EQ(VerdictOf(Order("ed3r-75 ~ ecd2r", 9), arms), Verdict::kReproduced);

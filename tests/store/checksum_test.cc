@@ -54,6 +54,11 @@ class ChecksumTest : public ::testing::Test {
 
 TEST_F(ChecksumTest, AWholeStoreHasNoDamage) { EXPECT_TRUE(DamagedIn(Run()).empty()); }
 
+TEST_F(ChecksumTest, WhoChecksTheWholeStoreKnowsItsDigest) {
+  ResultReader reader(Run());
+  EXPECT_EQ(reader.CheckWhole(), DigestOf(reader));
+}
+
 TEST_F(ChecksumTest, EveryReaderNamesAMissionWithAnotherNumber) {
   Sql(ResultsIn(Run()), "UPDATE missions SET total_j = total_j * 1.0000000001 WHERE run = 3 AND mission = 4");
   const std::string wanted =

@@ -35,6 +35,7 @@ void ExpectThreeMissionsOfRbs(const std::string& dir) {
   ASSERT_EQ(status.size(), 1u);
   EXPECT_EQ(status[0].done, 3);
   EXPECT_EQ(reader.FindDamage().size(), 0u);
+  EXPECT_EQ(reader.CheckWhole(), DigestOf(reader));
   std::int64_t timesteps = 0, steps = 0;
   double total_j = 0, steps_j = 0;
   reader.ForEachMission(Steps::kLoad, [&](const StoredMission& mission) {

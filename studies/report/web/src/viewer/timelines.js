@@ -1,7 +1,7 @@
 // The mission in time: confidence with its threshold, energy by part, battery, rate, who looked. A click goes there.
 import { scaleLinear } from "d3-scale";
 import { stack } from "d3-shape";
-import { area, curveStepAfter, line } from "d3-shape";
+import { area, curveLinear, curveStepAfter, line } from "d3-shape";
 import { axisBottom } from "d3-axis";
 import { select } from "d3-selection";
 import { el, svg } from "../lib/dom.js";
@@ -198,6 +198,15 @@ function energyLane(mission, x, top, height) {
   );
 }
 
+/** A line through [seconds, value]. */
+function trace(points, x, y, curve = curveLinear) {
+  const path = line(
+    (p) => x(p[0]),
+    (p) => y(p[1]),
+  ).curve(curve);
+  return svg("path", { class: "trace", d: path(points) });
+}
+
 function batteryLane(mission, x, top, height) {
   const y = scaleLinear([0, 1], [top + height, top]);
   const points = [
@@ -207,13 +216,7 @@ function batteryLane(mission, x, top, height) {
   return svg(
     "g",
     {},
-    svg("path", {
-      class: "trace",
-      d: line(
-        (p) => x(p[0]),
-        (p) => y(p[1]),
-      )(points),
-    }),
+    trace(points, x, y),
     ticks(x, y, [
       [0, "0"],
       [1, "100"],
@@ -232,13 +235,7 @@ function rateLane(mission, x, top, height) {
   return svg(
     "g",
     {},
-    svg("path", {
-      class: "trace",
-      d: line(
-        (p) => x(p[0]),
-        (p) => y(p[1]),
-      ).curve(curveStepAfter)(points),
-    }),
+    trace(points, x, y, curveStepAfter),
     ticks(x, y, [
       [0, "0"],
       [highest, number(highest / 1e6, 0)],
