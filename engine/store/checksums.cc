@@ -2,15 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/core/check.h"
 #include "engine/core/sha256.h"
+#include "engine/store/origins.h"
 
 namespace ed3r::store {
 namespace {
 
 std::vector<std::string> ColumnsIn(Connection& database, const std::string& table) {
   Statement info(database, fmt::format("SELECT name FROM pragma_table_info('{}') WHERE name NOT IN ('run', "
-                                       "'mission', 'checksum', 'steps_checksum') ORDER BY cid",
+                                       "'mission', 'checksum', 'steps_checksum', 'seal') ORDER BY cid",
                                        table));
   std::vector<std::string> names;
   while (info.Step()) names.push_back(info.Text(0));
@@ -33,6 +36,8 @@ std::string Sha256Of(std::string_view bytes) {
 RecordTables::RecordTables(Connection& database)
     : checked_(database.Int("SELECT count(*) FROM pragma_table_info('missions') WHERE name = 'checksum'") >
                0),
+      sealed_(database.Int("SELECT count(*) FROM pragma_table_info('missions') WHERE name = 'seal'") > 0),
+      origins_(sealed_ ? ReadOrigins(database) : std::vector<std::string>()),
       kept_(KeptIn(database)),
       missions_(ColumnsIn(database, "missions")),
       timesteps_(ColumnsIn(database, "timesteps")) {
@@ -75,6 +80,16 @@ std::string RecordTables::MissionChecksum(const RunLayout& layout, const sweep::
   missions_.Append(bytes, record);
   AppendText(bytes, steps);
   return Sha256Of(bytes);
+}
+
+std::string RecordTables::Seal(const std::string& mission_checksum) const {
+  ED3R_CHECK(!origins_.empty(), "a file whose recipe is not written yet");
+  return Sha256Of(mission_checksum + origins_.back());
+}
+
+bool RecordTables::IsSealed(const std::string& mission_checksum, const std::string& seal) const {
+  return std::any_of(origins_.rbegin(), origins_.rend(),
+                     [&](const std::string& origin) { return Sha256Of(mission_checksum + origin) == seal; });
 }
 
 Checksums RecordTables::Of(const RunLayout& layout, const sweep::RunId& id,

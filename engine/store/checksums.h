@@ -1,7 +1,9 @@
-// The checksum that stands beside each stored mission: whatever reads the mission compares it.
+// The checksums that stand beside each stored mission: whatever reads the mission compares them.
 //
-// Two of them, so that readers of missions alone need not read timesteps: one over the timesteps, and one over the
-// mission's place (stage, arm, number), its columns and the first. SHA-256 in hexadecimal.
+// Two are over what was flown, so that readers of missions alone need not read timesteps: one over the timesteps, and one
+// over the mission's place (stage, arm, number), its columns and the first. The third, the seal, is over the second and
+// the recipe that the mission was flown by, so that a mission of another run is known, whole as it is. Digests are made of
+// the second alone: seals change with what a run grows by, results do not. SHA-256 in hexadecimal.
 #pragma once
 
 #include <string>
@@ -32,6 +34,8 @@ class RecordTables {
   bool complete() const { return missions_.complete() && timesteps_.complete(); }
   // False in a file of format 1, whose missions have no checksums.
   bool checked() const { return checked_; }
+  // False in a file that was begun before missions had seals.
+  bool sealed() const { return sealed_; }
 
   sweep::KeptTimesteps KeptOf(int stage) const;
   // Whether the timesteps of this mission of the stage are in the file. Its checksums are over them in any case.
@@ -42,8 +46,14 @@ class RecordTables {
                               const mission::MissionRecord& record, const std::string& steps) const;
   Checksums Of(const RunLayout& layout, const sweep::RunId& id, const mission::MissionRecord& record) const;
 
+  // Of a mission with this checksum, by the recipe that the file has now.
+  std::string Seal(const std::string& mission_checksum) const;
+  // Whether it is one by any recipe that the file has had.
+  bool IsSealed(const std::string& mission_checksum, const std::string& seal) const;
+
  private:
-  bool checked_;
+  bool checked_, sealed_;
+  std::vector<std::string> origins_;        // of the recipes that the file has had, the present one last
   std::vector<sweep::KeptTimesteps> kept_;  // by stage
   StoredColumns<mission::MissionRecord> missions_;
   StoredColumns<mission::TimestepRecord> timesteps_;

@@ -14,8 +14,9 @@ RecordWriter::RecordWriter(Connection& database, const RunLayout& layout)
       tables_(database),
       insert_mission_(
           database,
-          fmt::format("INSERT INTO missions (run, mission, checksum, steps_checksum, {}) VALUES ({})",
-                      ColumnNames<mission::MissionRecord>(), Placeholders<mission::MissionRecord>(4))),
+          fmt::format("INSERT INTO missions (run, mission, checksum, steps_checksum, {}{}) VALUES ({}{})",
+                      ColumnNames<mission::MissionRecord>(), tables_.sealed() ? ", seal" : "",
+                      Placeholders<mission::MissionRecord>(4), tables_.sealed() ? ", ?" : "")),
       insert_step_(database, fmt::format("INSERT INTO timesteps (run, mission, {}) VALUES ({})",
                                          ColumnNames<mission::TimestepRecord>(),
                                          Placeholders<mission::TimestepRecord>(2))),
@@ -56,6 +57,9 @@ void RecordWriter::InsertRecord(const sweep::RunId& id, const mission::MissionRe
   insert_mission_.Bind(2, checksums.mission);
   insert_mission_.Bind(3, checksums.steps);
   BindColumns(insert_mission_, 4, record);
+  if (tables_.sealed())
+    insert_mission_.Bind(4 + static_cast<int>(ColumnsOf<mission::MissionRecord>().size()),
+                         tables_.Seal(checksums.mission));
   insert_mission_.Run();
   delete_failure_.Run(run, mission);
 }
@@ -112,12 +116,13 @@ MissionCursor::MissionCursor(Connection& database, const RunLayout& layout, cons
       layout_(layout),
       tables_(database),
       with_steps_(steps == Steps::kLoad),
-      select_(database,
-              fmt::format(
-                  "SELECT missions.run, missions.mission, session, wall_s, {}, {} FROM missions LEFT JOIN "
-                  "timings USING (run, mission) {} ORDER BY missions.run, missions.mission",
-                  tables_.checked() ? "checksum, steps_checksum" : "'', ''", tables_.missions().selection(),
-                  where)),
+      select_(
+          database,
+          fmt::format(
+              "SELECT missions.run, missions.mission, session, wall_s, {}, {}, {} FROM missions LEFT JOIN "
+              "timings USING (run, mission) {} ORDER BY missions.run, missions.mission",
+              tables_.checked() ? "checksum, steps_checksum" : "'', ''", tables_.sealed() ? "seal" : "''",
+              tables_.missions().selection(), where)),
       select_steps_(database, fmt::format("SELECT {} FROM timesteps WHERE run = ? AND mission = ? ORDER BY k",
                                           tables_.timesteps().selection())) {}
 
@@ -137,7 +142,8 @@ bool MissionCursor::Next() {
 void MissionCursor::Load() {
   checksum_ = select_.Text(4);
   steps_checksum_ = select_.Text(5);
-  ReadColumns(select_, 6, record_);
+  seal_ = select_.Text(6);
+  ReadColumns(select_, 7, record_);
   record_.steps.clear();
   if (with_steps_) {
     select_steps_.Bind(0, run());
@@ -161,6 +167,8 @@ std::string MissionCursor::WhatIsWrong(const sweep::RunId& id) const {
   if (!tables_.checked()) return "";
   if (tables_.MissionChecksum(layout_, id, record_, steps_checksum_) != checksum_)
     return "its record does not match its checksum";
+  if (tables_.sealed() && !tables_.IsSealed(checksum_, seal_))
+    return "it was not flown by this run's recipe: somebody has put a mission of another run here";
   if (!with_steps_) return "";
   if (!tables_.KeepsTimesteps(id.stage, record_))
     return record_.steps.empty() ? "" : "it has timesteps, which its sweep leaves out (store.timesteps)";

@@ -111,7 +111,7 @@ class MissionCursor {
   bool with_steps_;
   Statement select_, select_steps_;
   mission::MissionRecord record_;
-  std::string checksum_, steps_checksum_;
+  std::string checksum_, steps_checksum_, seal_;
   DamagedMission damage_;
   sweep::RunId id_;
 };

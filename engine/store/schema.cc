@@ -14,6 +14,7 @@
 #include "engine/mission/record.h"
 #include "engine/store/checksums.h"
 #include "engine/store/columns.h"
+#include "engine/store/origins.h"
 #include "engine/store/records.h"
 #include "engine/store/words.h"
 
@@ -45,7 +46,8 @@ CREATE TABLE failures (run INTEGER, mission INTEGER, scenario INTEGER NOT NULL, 
   message TEXT NOT NULL, kind TEXT NOT NULL DEFAULT '', PRIMARY KEY (run, mission)) STRICT, WITHOUT ROWID;
 CREATE TABLE timings (run INTEGER, mission INTEGER, session INTEGER NOT NULL, wall_s REAL NOT NULL,
   PRIMARY KEY (run, mission)) STRICT, WITHOUT ROWID;
-CREATE TABLE missions (run INTEGER, mission INTEGER, checksum TEXT NOT NULL, steps_checksum TEXT NOT NULL, {},
+CREATE TABLE missions (run INTEGER, mission INTEGER, checksum TEXT NOT NULL, steps_checksum TEXT NOT NULL,
+  seal TEXT NOT NULL, {},
   PRIMARY KEY (run, mission)) STRICT, WITHOUT ROWID;
 CREATE TABLE timesteps (run INTEGER, mission INTEGER, {}, PRIMARY KEY (run, mission, k)) STRICT, WITHOUT ROWID;
 )",
@@ -148,6 +150,8 @@ void CheckSeals(Connection& database) {
   const Transaction moment(database, Transaction::Kind::kRead);
   if (RecipeChecksum(database) != RecipeValue(database, "checksum"))
     FailDamagedRecipe(database, "its plan, layout or inputs do not match their checksum");
+  if (!ReadOrigins(database).empty() && !RecordTables(database).sealed())
+    FailDamagedRecipe(database, "its missions have lost their seals");
   const std::optional<std::string> uses = RecipeValue(database, kUsesKey);  // none in files of before
   if (uses && *uses != UsesChecksum(database))
     FailDamagedRecipe(database, "which arm flew which network does not match its checksum");
@@ -180,8 +184,18 @@ FileKind CheckFile(Connection& database, FileUse use) {
 
 namespace {
 
+// Adds what the file does not know of it yet.
+void AddSession(Connection& database, const Recipe& recipe, const std::vector<std::string>& origins) {
+  Statement put(database, "INSERT OR IGNORE INTO code VALUES (?, ?)");
+  for (const auto& [subsystem, identities] : recipe.code)
+    for (const std::string& identity : identities) put.Run(subsystem, identity);
+  if (RecordTables(database).sealed()) WriteOrigins(database, WithOrigin(origins, recipe));
+  SealRecipe(database);
+}
+
 // Into tables that are empty.
-void PutRecipe(Connection& database, const Recipe& recipe, const RunLayout& layout) {
+void PutRecipe(Connection& database, const Recipe& recipe, const RunLayout& layout,
+               const std::vector<std::string>& origins) {
   Statement put(database, "INSERT INTO recipe VALUES (?, ?)");
   put.Run("sweep", layout.name);
   put.Run("seed", std::to_string(layout.seed));
@@ -208,7 +222,7 @@ void PutRecipe(Connection& database, const Recipe& recipe, const RunLayout& layo
       put_run.Run(run++, number, static_cast<std::int64_t>(a), stage.arms[a].name,
                   stage.arms[a].first_scenario);
   }
-  AddCode(database, recipe.code);
+  AddSession(database, recipe, origins);
 }
 
 }  // namespace
@@ -218,17 +232,18 @@ void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& l
   database.Execute(ViewDefinition<mission::MissionRecord>("missions") +
                    ViewDefinition<mission::TimestepRecord>("timesteps"));
   CreateMissionsIndex(database);
-  PutRecipe(database, recipe, layout);
+  PutRecipe(database, recipe, layout, {});
   database.Execute(
       fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kSchemaVersion));
 }
 
 void ReplaceRecipe(Connection& database, const Recipe& recipe, const RunLayout& layout) {
+  const std::vector<std::string> origins = ReadOrigins(database);
   database.Execute(
       "DELETE FROM recipe; DELETE FROM inputs; DELETE FROM places; DELETE FROM files; DELETE FROM stages; "
       "DELETE "
       "FROM runs");
-  PutRecipe(database, recipe, layout);
+  PutRecipe(database, recipe, layout, origins);
 }
 
 void AddFailureKind(Connection& database) {
@@ -240,11 +255,8 @@ void CreateMissionsIndex(Connection& database) {
   database.Execute(fmt::format("CREATE INDEX IF NOT EXISTS {} ON missions (run)", kMissionsIndex));
 }
 
-void AddCode(Connection& database, const CodeIdentities& code) {
-  Statement put(database, "INSERT OR IGNORE INTO code VALUES (?, ?)");
-  for (const auto& [subsystem, identities] : code)
-    for (const std::string& identity : identities) put.Run(subsystem, identity);
-  SealRecipe(database);
+void ContinueRecipe(Connection& database, const Recipe& recipe) {
+  AddSession(database, recipe, ReadOrigins(database));
 }
 
 void SealNetworks(Connection& database) {

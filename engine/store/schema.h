@@ -1,13 +1,14 @@
 // The tables of DIR/results.sqlite, and how a file is recognised.
 //
-//   recipe          key, value: sweep, seed, plan, a checksum over all tables down to runs, and one over flown_networks
+//   recipe          key, value: sweep, seed, plan, origins (origins.h), a checksum over all tables down to runs, and one
+//                   over flown_networks
 //   code            subsystem, identity: see recipe.h
 //   inputs          name, fingerprint (of worlds and of detectors)
 //   files, places   the content of every file that missions read, where it is small enough; what the plan calls it
 //   stages, runs    the layout; a run is one arm of one stage
 //   networks        every network that flew, as a model file with its checksum, by the hash of what it computes
 //   flown_networks  which of them an arm asks, by training seed and agent
-//   missions        run, mission, checksum, steps_checksum (checksums.h), every column of MissionRecord
+//   missions        run, mission, checksum, steps_checksum and seal (checksums.h), every column of MissionRecord
 //   timesteps       run, mission, every column of TimestepRecord (k first)
 //   failures        missions that threw, with scenario, seed, kind and message; flown again by the next session
 //   sessions        who wrote, when and with what (session_notes): in no digest
@@ -22,7 +23,8 @@
 //
 // Formats: 1 had no checksums, code, files and networks; its recipe had one code_version and its inputs were called
 // worlds. It is read, but not continued. Within a format, columns may be added to missions and timesteps: a file that
-// lacks one is read with the field's initial value in its place. failures got its kind within format 2, too.
+// lacks one is read with the field's initial value in its place. failures got its kind and missions their seal within
+// format 2, too.
 #pragma once
 
 #include <string>
@@ -61,8 +63,8 @@ void AddFailureKind(Connection& database);
 // Where a file of before lacks it.
 void CreateMissionsIndex(Connection& database);
 
-// Adds identities of code to those that the file knows.
-void AddCode(Connection& database, const CodeIdentities& code);
+// Of a session that goes on with the same plan, perhaps by other code: adds what the file does not know of it.
+void ContinueRecipe(Connection& database, const Recipe& recipe);
 
 // Writes the checksum over flown_networks, after a change of it. Files of before have none until then. Call it in a transaction.
 void SealNetworks(Connection& database);

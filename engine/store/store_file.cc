@@ -156,7 +156,7 @@ void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout, Othe
   if (empty)
     CreateTables(*database_, recipe, layout);
   else if (grown_.empty())
-    AddCode(*database_, recipe.code);
+    ContinueRecipe(*database_, recipe);
   else
     Grow(*database_, recipe, layout);
   AddFailureKind(*database_);

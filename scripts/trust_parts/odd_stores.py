@@ -75,6 +75,7 @@ NAMED = {
                           "SELECT i + 1 FROM n) SELECT other.* FROM n JOIN other",
     "a trigger that writes": "CREATE TRIGGER t AFTER INSERT ON missions BEGIN UPDATE missions SET total_j = 0; END",
     "a table less": "DROP TABLE timesteps",
+    "seals that are gone": "DROP VIEW named_missions; ALTER TABLE missions DROP COLUMN seal",
     "a column less": "DROP VIEW named_missions; ALTER TABLE missions DROP COLUMN site",
 }
 
@@ -218,6 +219,10 @@ def exchanged(trial, out, cache, digest):
         said = trial.ed3r("merge", *arguments)
         trial.count("merges")
         trial.expect(said.status == 0 and trial.digest(arguments[0]) == digest, what, str(said))
+    mission = "WHERE run = 3 AND mission = 3"
+    sql = f"ATTACH '{other / 'results.sqlite'}' AS other; DELETE FROM missions {mission}; DELETE FROM timesteps {mission};" + "".join(
+        f"INSERT INTO {table} SELECT * FROM other.{table} {mission};" for table in ("missions", "timesteps"))
+    named(trial, "a whole mission of another seed", change(trial, out, sql), cache, digest)
     said = trial.ed3r("diff", out, other)
     trial.expect(said.status in (1, 2) and not (said.status == 2 and said.fault()), "diff of two seeds", str(said))
 

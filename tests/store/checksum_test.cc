@@ -54,6 +54,84 @@ class ChecksumTest : public ::testing::Test {
 
 TEST_F(ChecksumTest, AWholeStoreHasNoDamage) { EXPECT_TRUE(DamagedIn(Run()).empty()); }
 
+// Each of its checksums fits: only the recipe tells that it is none of this run's.
+TEST_F(ChecksumTest, AWholeMissionOfAnotherRunIsNamed) {
+  Recipe other = TestRecipe();
+  other.plan_text += "  robot.mass_kg: 2\n";
+  WriteStore(temp_ / "other", AllMissions(TestLayout()), other);
+  Sql(ResultsIn(Run()),
+      "DELETE FROM missions WHERE run = 3 AND mission = 6;"
+      "ATTACH '" +
+          ResultsIn(temp_ / "other") +
+          "' AS other;"
+          "INSERT INTO main.missions SELECT * FROM other.missions WHERE run = 3 AND mission = 6");
+  EXPECT_EQ(
+      DamagedIn(Run()),
+      std::vector<std::string>{
+          "stage online, arm ed3r-75, mission 6: it was not flown by this run's recipe: somebody has put a "
+          "mission of another run here"});
+  ExpectRepairable();
+}
+
+TEST_F(ChecksumTest, OtherWorldsAndOtherCodeAreAnotherRun) {
+  Recipe worlds = TestRecipe(), code = TestRecipe();
+  worlds.inputs["worlds/ridges.yaml"] = "fingerprint-2";
+  code.code["flight"] = {"4567cdef"};
+  for (const Recipe& other : {worlds, code}) {
+    const TempDir temp;
+    WriteStore(temp / "other", {{0, 0, 1}}, other);
+    Sql(ResultsIn(Run()), "ATTACH '" + ResultsIn(temp / "other") +
+                              "' AS other;"
+                              "INSERT OR REPLACE INTO main.missions SELECT * FROM other.missions WHERE run = "
+                              "0 AND mission = 1");
+    EXPECT_EQ(DamagedIn(Run()).size(), 1u);
+    ExpectRepairable();
+  }
+}
+
+TEST_F(ChecksumTest, MissionsOfEachCodeThatContinuedARunAreItsOwn) {
+  Recipe newer = TestRecipe();
+  newer.code["flight"] = {"89abcdef"};
+  const std::string dir = temp_ / "mixed";
+  WriteStore(dir, {{0, 0, 1}});
+  ResultStore::Open(dir, newer, TestLayout(), OtherCode::kAccept)
+      ->Put({0, 0, 2}, TestRecord({0, 0, 2}), 0.25);
+  {
+    const auto store = ResultStore::Open(dir, newer, TestLayout());
+    store->Put({0, 0, 3}, TestRecord({0, 0, 3}), 0.25);
+    store->Commit();
+  }
+  const auto store = ResultStore::Open(dir, TestRecipe(), TestLayout());
+  store->Put({0, 0, 4}, TestRecord({0, 0, 4}), 0.25);
+  store->Commit();
+  EXPECT_EQ(store->Stored().size(), 3u);  // what was not committed is gone
+  EXPECT_EQ(DamagedIn(dir), std::vector<std::string>{});
+}
+
+TEST_F(ChecksumTest, SealsThatAreGoneAreDamage) {
+  Sql(ResultsIn(Run()), "DROP VIEW named_missions; ALTER TABLE missions DROP COLUMN seal");
+  EXPECT_TRUE(
+      Contains(UserErrorOf([&] { ResultReader reader(Run()); }), "its missions have lost their seals"));
+}
+
+TEST_F(ChecksumTest, AFileOfBeforeHasNoSealsAndGoesOnWithout) {
+  {
+    Connection database(ResultsIn(Run()), Connection::Access::kReadWrite);
+    database.Execute(
+        "DROP VIEW named_missions; ALTER TABLE missions DROP COLUMN seal; DELETE FROM missions WHERE run = "
+        "0; "
+        "DELETE FROM timesteps WHERE run = 0; DELETE FROM timings WHERE run = 0; "
+        "DELETE FROM recipe WHERE key = 'origins'");
+    ContinueRecipe(database, TestRecipe());
+  }
+  const auto store = ResultStore::Open(Run(), TestRecipe(), TestLayout());
+  store->Put({0, 0, 1}, TestRecord({0, 0, 1}), 0.25);
+  store->Commit();
+  EXPECT_FALSE(ResultReader(Run()).Tables().sealed());
+  EXPECT_EQ(store->Stored().size(), 61u);
+  EXPECT_TRUE(store->FindDamage().empty());
+}
+
 TEST_F(ChecksumTest, WhoChecksTheWholeStoreKnowsItsDigest) {
   ResultReader reader(Run());
   EXPECT_EQ(reader.CheckWhole(), DigestOf(reader));

@@ -82,9 +82,12 @@ TEST(FormatTest, AColumnThatTheFileLacksHasItsInitialValue) {
   WriteStore(temp / "run", {{0, 0, 0}, {2, 1, 3}});
   Sql(ResultsIn(temp / "run"),
       "DROP VIEW named_timesteps; DROP VIEW named_missions; ALTER TABLE timesteps DROP COLUMN rate_bps; "
+      "ALTER TABLE missions DROP COLUMN seal; "
       "ALTER TABLE missions DROP COLUMN network");
   {
     Connection database(ResultsIn(temp / "run"), Connection::Access::kReadWrite);
+    database.Execute("DELETE FROM recipe WHERE key = 'origins'");
+    ContinueRecipe(database, TestRecipe());
     const RecordTables tables(database);
     EXPECT_FALSE(tables.complete());
     Statement put(database,
