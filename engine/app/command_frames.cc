@@ -114,7 +114,9 @@ class DataSet {
     MakeFolder(out);
     FrameFile frames(out / "frames.npy", options_.views * options_.frames, size_);
     std::string labels =
-        "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label,tilt_deg,distractors\n";
+        "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label,tilt_deg,haze_range_m,sun_"
+        "deg,"
+        "cloud_cover,distractors\n";
     int looks = 0;
     for (int kept = 0; kept < options_.views; ++looks) {
       if (looks == kMaxViews)
@@ -163,12 +165,15 @@ class DataSet {
     with_fire_ += fire ? 1 : 0;
     const world::Scene& scene = *worlds_[world];
     const std::string props = perception::PropsInView(renderer, scene, plan.pose, config_.sensing);
+    const perception::Ambience& weather = renderer.Weather();
     for (int i = 0; i < options_.frames; ++i)
-      labels += fmt::format("{},{},{},\"{}\",\"{}\",{:.1f},{},{},{:.3f},{},{:.1f},{}\n",
-                            kept * options_.frames + i, view, numbers_[static_cast<std::size_t>(i)],
-                            scene.Name(), scene.Sites()[static_cast<std::size_t>(plan.site)].name,
-                            truth.distance_m, truth.fire_px, truth.smoke_px, truth.occluded, fire ? 1 : 0,
-                            plan.pose.tilt_rad * 180.0 / std::numbers::pi, props);
+      labels +=
+          fmt::format("{},{},{},\"{}\",\"{}\",{:.1f},{},{},{:.3f},{},{:.1f},{:.0f},{:.1f},{:.2f},{}\n",
+                      kept * options_.frames + i, view, numbers_[static_cast<std::size_t>(i)], scene.Name(),
+                      scene.Sites()[static_cast<std::size_t>(plan.site)].name, truth.distance_m,
+                      truth.fire_px, truth.smoke_px, truth.occluded, fire ? 1 : 0,
+                      plan.pose.tilt_rad * 180.0 / std::numbers::pi, weather.haze_range_m,
+                      std::asin(weather.to_sun.z()) * 180.0 / std::numbers::pi, weather.cloud_cover, props);
     if (kept < options_.pictures) WritePictures(view, sensed.frames, renderer, plan.pose);
     return true;
   }

@@ -8,7 +8,7 @@ namespace ed3r {
 struct RenderConfig {
   int width_px = 192;
   int height_px = 108;
-  int frame_step = 3;
+  int frame_step = 5;
   double noise = 2.0;
   double jitter_deg = 0.2;
   double weather = 1.0;

@@ -1,4 +1,4 @@
-// Processor time of the detectors' networks on one core: the 11 frames of a sensing period that are looked at, of the compact
+// Processor time of the detectors' networks on one core: the 7 frames of a sensing period that are looked at, of the compact
 // networks, one frame of the full-size one; single precision against 8-bit integers, medians, interleaved so that a busy
 // machine slows both. What flies is Full (192 x 108) in single precision and Quantized (96 x 54) in integers.
 //
@@ -55,10 +55,10 @@ int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 50;
   std::vector<int> batches;
   for (int i = 2; i < argc; ++i) batches.push_back(std::atoi(argv[i]));
-  if (batches.empty()) batches = {11};
+  if (batches.empty()) batches = {7};
   for (const int batch : batches) {
-    ed3r::perception::Compare(ed3r::perception::CompactFullTopology(), 11, batch, rounds);
-    ed3r::perception::Compare(ed3r::perception::CompactQuantizedTopology(), 11, batch, rounds);
+    ed3r::perception::Compare(ed3r::perception::CompactFullTopology(), 7, batch, rounds);
+    ed3r::perception::Compare(ed3r::perception::CompactQuantizedTopology(), 7, batch, rounds);
   }
   ed3r::perception::Compare(ed3r::perception::FullSizeTopology(), 1, 1, std::max(1, rounds / 20));
 }

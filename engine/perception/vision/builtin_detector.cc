@@ -11,7 +11,7 @@ namespace ed3r::perception {
 namespace {
 
 // As many frames of a sensing period as are looked at by default.
-constexpr int kBatch = 11;
+constexpr int kBatch = 7;
 
 class NetworkDetector final : public FrameDetector {
  public:

@@ -1,6 +1,6 @@
 // Measures where the time of one sensing period goes, over views of the kind that detectors are trained on.
 //
-//   render_bench WORLD.yaml [VIEWS [WxH [FRAMES]]]     default: 200 views, 192x108, 11 frames
+//   render_bench WORLD.yaml [VIEWS [WxH [FRAMES]]]     default: 200 views, 192x108, 7 frames
 //
 // For each part: milliseconds of CPU time per sensing period, median and mean over the views, one thread.
 #include <fmt/format.h>
@@ -55,7 +55,7 @@ void Run(const std::string& world, int views, PictureSize size, int frames) {
   const Config config;
   const PixelGrid grid{size.width_px, size.height_px, 2};
   std::vector<PlumePhase> phases(static_cast<std::size_t>(frames));
-  for (std::size_t i = 0; i < phases.size(); ++i) phases[i].time_s = static_cast<double>(i) / 11.0;
+  for (std::size_t i = 0; i < phases.size(); ++i) phases[i].time_s = static_cast<double>(i) / 6.6;
   std::vector<int> numbers(phases.size());
   std::iota(numbers.begin(), numbers.end(), 0);
   std::array<Part, 4> parts = {{{"trace", {}}, {"shade", {}}, {"fire and smoke", {}}, {"all", {}}}};
@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
   }
   ed3r::perception::PictureSize size{192, 108};
   if (argc > 3 && std::sscanf(argv[3], "%dx%d", &size.width_px, &size.height_px) != 2) return 2;
-  const int frames = argc > 4 ? std::clamp(std::atoi(argv[4]), 1, 33) : 11;
+  const int frames = argc > 4 ? std::clamp(std::atoi(argv[4]), 1, 33) : 7;
   try {
     ed3r::perception::Run(argv[1], argc > 2 ? std::max(1, std::atoi(argv[2])) : 200, size, frames);
     return 0;
