@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Trains the built-in detectors on frames of `ed3r frames`, or on a data set in D-Fire's layout.
 
-  train_detector.py DATASET_DIR... --out DIR [--check DIR] [--test DIR]... [--network full|quantized] [--epochs N] [--seed N]
+  train_detector.py DATASET_DIR... --out DIR [--check DIR] [--test DIR]... [--network full|quantized|quarter] [--epochs N] [--seed N]
   train_detector.py --dataset dfire DIR --out DIR
 
 Two networks of the same layers are trained: Full for frames of 192 x 108, Quantized for their halves. Of each there is
@@ -29,7 +29,7 @@ import numpy as np
 from detector_training import data, measure
 
 VALIDATION_SHARE, CALIBRATION_FRAMES = 0.2, 512
-NETWORKS = ("full", "quantized")
+NETWORKS = ("full", "quantized")  # 'quarter' only where it is asked for
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
@@ -40,7 +40,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--check", type=pathlib.Path, help="a data set of the same kind that chooses epoch and calibration")
     parser.add_argument("--test", type=pathlib.Path, action="append", default=[],
                         help="a data set of the same kind from other worlds, for the scores alone")
-    parser.add_argument("--network", choices=NETWORKS, action="append", help="only this one")
+    parser.add_argument("--network", choices=(*NETWORKS, "quarter"), action="append", help="only this one")
     parser.add_argument("--epochs", type=int, default=8)
     parser.add_argument("--share", type=float, default=0.5,
                         help="of the frames in each epoch, drawn anew: more views help more than more looks at each")
@@ -99,9 +99,9 @@ def main(arguments: list[str]) -> int:
         print(error, file=sys.stderr)
         return 2
     options.out.mkdir(parents=True, exist_ok=True)
+    from detector_training.network import SHRUNK
     for kind in options.network or NETWORKS:
-        parts = [training, check, *tests]
-        train_and_write(kind, options, *(part.at_half() if kind == "quantized" else part for part in parts))
+        train_and_write(kind, options, *(part.shrunk_by(SHRUNK[kind]) for part in (training, check, *tests)))
     return 0
 
 

@@ -36,7 +36,7 @@ std::string Sha256Of(std::string_view bytes) {
 RecordTables::RecordTables(Connection& database)
     : checked_(database.Int("SELECT count(*) FROM pragma_table_info('missions') WHERE name = 'checksum'") >
                0),
-      sealed_(database.Int("SELECT count(*) FROM pragma_table_info('missions') WHERE name = 'seal'") > 0),
+      sealed_(HasSeals(database)),
       origins_(sealed_ ? ReadOrigins(database) : std::vector<std::string>()),
       kept_(KeptIn(database)),
       missions_(ColumnsIn(database, "missions")),

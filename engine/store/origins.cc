@@ -26,6 +26,10 @@ std::string OriginOf(const Recipe& recipe) {
 
 }  // namespace
 
+bool HasSeals(Connection& database) {
+  return database.Int("SELECT count(*) FROM pragma_table_info('missions') WHERE name = 'seal'") > 0;
+}
+
 std::vector<std::string> ReadOrigins(Connection& database) {
   Statement select(database, "SELECT value FROM recipe WHERE key = ?");
   select.Bind(0, kKey);

@@ -11,6 +11,9 @@
 
 namespace ed3r::store {
 
+// False in files that were begun before missions had seals (checksums.h).
+bool HasSeals(Connection& database);
+
 // In the order in which they came, the present one last; none in files of before.
 std::vector<std::string> ReadOrigins(Connection& database);
 void WriteOrigins(Connection& database, const std::vector<std::string>& origins);

@@ -150,7 +150,7 @@ void CheckSeals(Connection& database) {
   const Transaction moment(database, Transaction::Kind::kRead);
   if (RecipeChecksum(database) != RecipeValue(database, "checksum"))
     FailDamagedRecipe(database, "its plan, layout or inputs do not match their checksum");
-  if (!ReadOrigins(database).empty() && !RecordTables(database).sealed())
+  if (!ReadOrigins(database).empty() && !HasSeals(database))
     FailDamagedRecipe(database, "its missions have lost their seals");
   const std::optional<std::string> uses = RecipeValue(database, kUsesKey);  // none in files of before
   if (uses && *uses != UsesChecksum(database))
@@ -189,7 +189,7 @@ void AddSession(Connection& database, const Recipe& recipe, const std::vector<st
   Statement put(database, "INSERT OR IGNORE INTO code VALUES (?, ?)");
   for (const auto& [subsystem, identities] : recipe.code)
     for (const std::string& identity : identities) put.Run(subsystem, identity);
-  if (RecordTables(database).sealed()) WriteOrigins(database, WithOrigin(origins, recipe));
+  if (HasSeals(database)) WriteOrigins(database, WithOrigin(origins, recipe));
   SealRecipe(database);
 }
 

@@ -6,7 +6,7 @@ import pathlib
 
 import numpy as np
 
-WIDTH, HEIGHT = 192, 108  # of the frames; a network may look at their halves (network.py)
+WIDTH, HEIGHT = 192, 108  # of the frames; a network may look at them made smaller (network.py)
 
 # A frame is positive when the renderer's ground truth says so: one visible pixel of fire or smoke. Frames with fewer
 # than these, in the pixels that the network looks at, are left out of training, where a pixel or two teaches noise,
@@ -19,10 +19,10 @@ class DataError(Exception):
 
 
 class Frames:
-    """Frames of several arrays on disk as one list, read where they are asked for; halved ones are averaged over 2 x 2."""
+    """Frames of several arrays on disk as one list, read where they are asked for, averaged over shrunk x shrunk pixels."""
 
-    def __init__(self, parts: list[np.ndarray], chosen=None, halved=False):
-        self.parts, self.halved = parts, halved
+    def __init__(self, parts: list[np.ndarray], chosen=None, shrunk=1):
+        self.parts, self.shrunk = parts, shrunk
         self.starts = np.cumsum([0] + [len(part) for part in parts])
         self.chosen = np.arange(self.starts[-1]) if chosen is None else chosen
 
@@ -36,20 +36,20 @@ class Frames:
             inside = (numbers >= start) & (numbers < end)
             if inside.any():
                 found[inside] = part[numbers[inside] - start]
-        return halve(found) if self.halved else found
+        return shrink(found, self.shrunk) if self.shrunk > 1 else found
 
     def select(self, mask: np.ndarray) -> "Frames":
-        return Frames(self.parts, self.chosen[mask], self.halved)
+        return Frames(self.parts, self.chosen[mask], self.shrunk)
 
-    def at_half(self) -> "Frames":
-        return Frames(self.parts, self.chosen, True)
+    def shrunk_by(self, by: int) -> "Frames":
+        return Frames(self.parts, self.chosen, by)
 
 
-def halve(frames: np.ndarray) -> np.ndarray:
-    """The mean of each 2 x 2 pixels, rounded half up: what engine/perception/vision/resize.h makes of such frames."""
+def shrink(frames: np.ndarray, by: int) -> np.ndarray:
+    """The mean of each by x by pixels, rounded half up: what engine/perception/vision/resize.h makes of such frames."""
     n, height, width, colours = frames.shape
-    sums = frames.reshape(n, height // 2, 2, width // 2, 2, colours).sum((2, 4), dtype=np.uint16)
-    return ((sums + 2) // 4).astype(np.uint8)
+    sums = frames.reshape(n, height // by, by, width // by, by, colours).sum((2, 4), dtype=np.uint16)
+    return ((sums + by * by // 2) // (by * by)).astype(np.uint8)
 
 
 @dataclasses.dataclass
@@ -68,10 +68,10 @@ class DataSet:
         return DataSet(self.name, self.frames.select(mask), self.positive[mask], self.usable[mask], self.view[mask],
                        {key: values[mask] for key, values in self.columns.items()}, self.sha256)
 
-    def at_half(self) -> "DataSet":
-        """The same as a network sees it that looks at frames of half the width and height."""
-        usable = clear(self.columns, 4) == self.positive if "fire_px" in self.columns else self.usable
-        return dataclasses.replace(self, frames=self.frames.at_half(), usable=usable)
+    def shrunk_by(self, by: int) -> "DataSet":
+        """The same as a network sees it that looks at frames of so much less width and height."""
+        usable = clear(self.columns, by * by) == self.positive if "fire_px" in self.columns else self.usable
+        return dataclasses.replace(self, frames=self.frames.shrunk_by(by), usable=usable)
 
     def __len__(self) -> int:
         return len(self.positive)

@@ -6,11 +6,13 @@ import torch.nn.functional as F
 
 from .data import HEIGHT, WIDTH
 
-# Both networks have these layers; Quantized looks at frames of half the width and height, for a quarter of the cost.
+# All networks have these layers; Quantized looks at frames of half the width and height, for a quarter of the cost. Quarter is
+# not flown: it shows what fewer pixels cost (scripts/plot_detectors.py).
 CONVOLUTIONS = [(8, 3, 2), (8, 3, 1), (16, 3, 2), (16, 3, 1), (32, 3, 2), (32, 3, 1), (48, 3, 2), (48, 3, 1),
                 (64, 3, 1), (64, 3, 1), (64, 3, 2)]  # channels, kernel, stride
 DENSE = [64, 1]
-SIZES = {"full": (WIDTH, HEIGHT), "quantized": (WIDTH // 2, HEIGHT // 2)}
+SHRUNK = {"full": 1, "quantized": 2, "quarter": 4}
+SIZES = {kind: (WIDTH // by, HEIGHT // by) for kind, by in SHRUNK.items()}
 SLOPE = 0.1
 PIXEL_OFFSET, PIXEL_SCALE = 128, 1.0 / 64.0
 

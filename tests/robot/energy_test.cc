@@ -116,6 +116,22 @@ TEST(EnergyTest, MomentumTheoryInHoverAndClimb) {
   EXPECT_LT(power.horizontal_w, power.hover_w) << "translational lift";
 }
 
+TEST(EnergyTest, TheFourMovementsAreAtTheirSpeedAndStillOtherwise) {
+  EnergyConfig energy;
+  energy.model = PowerModel::kMomentum;
+  const MovementPower power = MovementPowerOf(Heavy(), Thin(), energy);
+  const MomentumParameters<> parameters{energy.momentum_efficiency, energy.induced_factor,
+                                        energy.interference, energy.profile_share, energy.drag_area_m2};
+  const auto power_w = [&](double horizontal_mps, double climb_mps) {
+    return MomentumPowerW(parameters, 3.0, horizontal_mps, climb_mps, Air{0.8, 9.0},
+                          MakeRotorcraft(Heavy()).DiscAreaM2());
+  };
+  EXPECT_EQ(power.hover_w, power_w(0, 0));
+  EXPECT_EQ(power.horizontal_w, power_w(4, 0));
+  EXPECT_EQ(power.ascent_w, power_w(0, 4));
+  EXPECT_EQ(power.descent_w, power_w(0, -4));
+}
+
 // The shares at several airspeeds: v_i of Glauert's equation found by bisection outside this program, the rest by hand from
 // P = [kappa (1 + chi (1 - cos X)) T v_i + c_p T^1.5 / sqrt(2 rho A) + D V + m g v_v] / efficiency.
 TEST(EnergyTest, MomentumTheoryInFlight) {
