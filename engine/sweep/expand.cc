@@ -68,9 +68,8 @@ class StageExpander {
 
   void Expand(const std::vector<Setting>& written, const std::vector<Setting>& overriding,
               const std::string& top_folder) {
-    const std::vector<Setting> fixed = WithoutSwept(written), overrides = WithoutSwept(overriding);
-    CheckOffAxes(fixed, overrides);
-    fixed_ = MergedSettings(fixed, overrides);
+    CheckOffAxes(written, overriding);
+    fixed_ = MergedSettings(written, overriding);
     Arm common;
     common.files["mission.world"] = common.config.mission.world;
     common.config.mission.world = DefaultWorld(top_folder, common.config.mission.world);
@@ -83,21 +82,15 @@ class StageExpander {
   }
 
  private:
-  // What an airframe file says of a key on an axis is its default.
-  std::vector<Setting> WithoutSwept(const std::vector<Setting>& settings) const {
-    std::vector<Setting> kept;
-    for (const Setting& setting : settings)
-      if (!setting.of_airframe_file || FindOnAxes(axes_, setting.key) == nullptr) kept.push_back(setting);
-    return kept;
-  }
-
   void CheckOffAxes(const std::vector<Setting>& fixed, const std::vector<Setting>& overrides) const {
     for (const Setting& setting : overrides) {
+      if (setting.is_default) continue;
       if (const Setting* axis = FindOnAxes(axes_, setting.key))
         FailAt(setting.at,
                fmt::format("{}: is not allowed here: the sweep varies it, at {}", setting.key, axis->at));
     }
     for (const Setting& setting : fixed) {
+      if (setting.is_default) continue;
       if (const Setting* axis = FindOnAxes(axes_, setting.key))
         FailAt(setting.at, fmt::format("{}: '{}' is not allowed here: the sweep varies it, at {}",
                                        setting.key, setting.canonical, axis->at));
@@ -245,7 +238,7 @@ std::vector<Stage> ExpandStages(const SweepSource& source, const std::vector<Set
                       SizeText(expander.Size()), stage.name,
                       all_arms > 0 ? fmt::format(", after {} arms,", all_arms) : "", kMaxArms));
     const std::vector<Setting> under =
-        from.section.axes ? SettingsOffAxes(source.top.set, *from.section.axes) : source.top.set;
+        from.section.axes ? DefaultsOf(source.top.set, *from.section.axes) : source.top.set;
     expander.Expand(MergedSettings(under, from.section.set), overrides, FolderOf(source.file));
     all_arms += static_cast<std::int64_t>(stage.arms.size());
     all_missions += static_cast<std::int64_t>(stage.arms.size()) * stage.missions;

@@ -96,7 +96,7 @@ std::vector<Setting> ReadAirframeFile(const std::string& path, const std::string
   std::vector<Setting> settings = SettingReader(FolderOf(path), FolderOf(path), false, {})
                                       .ReadMap(ReadYamlFile(path).root, "an airframe file");
   for (Setting& setting : settings) {
-    setting.of_airframe_file = true;
+    setting.is_default = true;
     const std::string subject = setting.key.substr(0, setting.key.find('.'));
     if (subject != "robot" && subject != "energy" && subject != "environment" && subject != "cpu")
       FailAt(setting.at,

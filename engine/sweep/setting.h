@@ -17,11 +17,13 @@ namespace ed3r::sweep {
 using ValueCheck = std::function<std::string(const std::string& key, const std::string& value)>;
 
 struct Setting {
-  std::string key;                // full: "mission.strategy" even where "strategy" was written
-  std::string text;               // read by SetParameter; a file is a path that can be opened from here
-  std::string canonical;          // the same wherever the sweep lies: differs from text for files only
-  std::string at;                 // where the value was written
-  bool of_airframe_file = false;  // a default that an axis may vary: nobody wrote it beside the axis
+  std::string key;        // full: "mission.strategy" even where "strategy" was written
+  std::string text;       // read by SetParameter; a file is a path that can be opened from here
+  std::string canonical;  // the same wherever the sweep lies: differs from text for files only
+  std::string at;         // where the value was written
+  // An axis may vary it, as nobody wrote it beside that axis: of an airframe file, a base file, the level above. Points of the
+  // axis that do not name the key keep it.
+  bool is_default = false;
 };
 
 // `strategy` is short for mission.strategy; all other keys are written in full.

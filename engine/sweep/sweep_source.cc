@@ -122,7 +122,7 @@ std::vector<StageSource> ReadStages(const YamlNode& node, const SettingReader& r
 void MergeUnder(SweepSource& source, SweepSource base) {
   SweepSection& top = source.top;
   // A base file's setting is a default, so an axis may vary it; within one file that is a contradiction.
-  if (top.axes) base.top.set = SettingsOffAxes(base.top.set, *top.axes);
+  if (top.axes) base.top.set = DefaultsOf(std::move(base.top.set), *top.axes);
   top.set = MergedSettings(base.top.set, top.set);
   if (!top.missions) top.missions = std::move(base.top.missions);
   if (!top.precision) top.precision = std::move(base.top.precision);
@@ -202,11 +202,10 @@ std::vector<Setting> MergedSettings(const std::vector<Setting>& under, const std
   return merged;
 }
 
-std::vector<Setting> SettingsOffAxes(const std::vector<Setting>& settings, const std::vector<Axis>& axes) {
-  std::vector<Setting> kept;
-  for (const Setting& setting : settings)
-    if (FindOnAxes(axes, setting.key) == nullptr) kept.push_back(setting);
-  return kept;
+std::vector<Setting> DefaultsOf(std::vector<Setting> settings, const std::vector<Axis>& axes) {
+  for (Setting& setting : settings)
+    if (FindOnAxes(axes, setting.key) != nullptr) setting.is_default = true;
+  return settings;
 }
 
 }  // namespace ed3r::sweep

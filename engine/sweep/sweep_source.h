@@ -61,7 +61,7 @@ SweepSource ReadSweepSource(const std::string& file, const ValueCheck& check);
 // Settings of `under` that `over` does not set, then those of `over`.
 std::vector<Setting> MergedSettings(const std::vector<Setting>& under, const std::vector<Setting>& over);
 
-// The settings whose keys are on none of the axes.
-std::vector<Setting> SettingsOffAxes(const std::vector<Setting>& settings, const std::vector<Axis>& axes);
+// The settings, those whose keys are on the axes as defaults that these vary.
+std::vector<Setting> DefaultsOf(std::vector<Setting> settings, const std::vector<Axis>& axes);
 
 }  // namespace ed3r::sweep

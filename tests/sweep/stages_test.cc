@@ -83,6 +83,43 @@ TEST(StagesTest, AnAirframesKeysCanBeSwept) {
                UserError);
 }
 
+// What stands above a list holds in the points that do not name its key, too.
+TEST(StagesTest, ASettingAboveAListHoldsWhereAPointSaysNothing) {
+  const SweepPlan plan = LoadText(
+      "name: st\nmissions: 4\nset: {strategy: rbs, robot.battery_mah: 300, robot.mass_kg: 2.4}\n"
+      "stages:\n  - name: online\n    sweep:\n      list:\n"
+      "        - {name: plain, robot.speed_mps: 5}\n        - {name: light, robot.mass_kg: 1.5}\n");
+  ASSERT_EQ(plan.stages[0].arms.size(), 2u);
+  EXPECT_EQ(plan.stages[0].arms[0].config.robot.mass_kg, 2.4);
+  EXPECT_EQ(plan.stages[0].arms[0].config.robot.speed_mps, 5.0);
+  EXPECT_EQ(plan.stages[0].arms[1].config.robot.mass_kg, 1.5);
+}
+
+TEST(StagesTest, ABaseFilesSettingHoldsWhereAPointSaysNothing) {
+  const ScratchFolder scratch;
+  scratch.Write("base.yaml", "name: base\nmissions: 4\nset: {strategy: rbs, robot.mass_kg: 2}\n");
+  const SweepPlan plan = LoadSweep(
+      scratch.Write("x.yaml",
+                    "name: x\nbase: base.yaml\nsweep:\n  list:\n    - {name: plain, robot.speed_mps: 5}\n"
+                    "    - {name: light, robot.mass_kg: 1.5}\n"),
+      {});
+  EXPECT_EQ(plan.stages[0].arms[0].config.robot.mass_kg, 2.0);
+  EXPECT_EQ(plan.stages[0].arms[1].config.robot.mass_kg, 1.5);
+}
+
+TEST(StagesTest, AnAirframesValueHoldsWhereAPointSaysNothing) {
+  const ScratchFolder scratch;
+  scratch.Write("air.yaml", "robot: {battery_mah: 4500}\n");
+  const std::string points =
+      "sweep:\n  list:\n    - {name: plain, robot.speed_mps: 5}\n    - {name: small, robot.battery_mah: "
+      "300}\n";
+  const std::string head = "name: x\nmissions: 4\n";
+  const SweepPlan in_file =
+      LoadSweep(scratch.Write("x.yaml", head + "set: {strategy: rbs, robot: air.yaml}\n" + points), {});
+  EXPECT_EQ(in_file.stages[0].arms[0].config.robot.battery_mah, 4500.0);
+  EXPECT_EQ(in_file.stages[0].arms[1].config.robot.battery_mah, 300.0);
+}
+
 TEST(StagesTest, ContradictionsAcrossLevelsAreRefused) {
   EXPECT_EQ(Refusal("name: x\nmissions: 1\nsweep: {robot.mass_kg: [1, 2]}\n"
                     "stages:\n  - {name: a, set: {robot.mass_kg: 1}}\n"),
