@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "engine/core/check.h"
 #include "engine/core/sha256.h"
-#include "engine/store/origins.h"
 
 namespace ed3r::store {
 namespace {
@@ -36,8 +33,6 @@ std::string Sha256Of(std::string_view bytes) {
 RecordTables::RecordTables(Connection& database)
     : checked_(database.Int("SELECT count(*) FROM pragma_table_info('missions') WHERE name = 'checksum'") >
                0),
-      sealed_(HasSeals(database)),
-      origins_(sealed_ ? ReadOrigins(database) : std::vector<std::string>()),
       kept_(KeptIn(database)),
       missions_(ColumnsIn(database, "missions")),
       timesteps_(ColumnsIn(database, "timesteps")) {
@@ -80,16 +75,6 @@ std::string RecordTables::MissionChecksum(const RunLayout& layout, const sweep::
   missions_.Append(bytes, record);
   AppendText(bytes, steps);
   return Sha256Of(bytes);
-}
-
-std::string RecordTables::Seal(const std::string& mission_checksum) const {
-  ED3R_CHECK(!origins_.empty(), "a file whose recipe is not written yet");
-  return Sha256Of(mission_checksum + origins_.back());
-}
-
-bool RecordTables::IsSealed(const std::string& mission_checksum, const std::string& seal) const {
-  return std::any_of(origins_.rbegin(), origins_.rend(),
-                     [&](const std::string& origin) { return Sha256Of(mission_checksum + origin) == seal; });
 }
 
 Checksums RecordTables::Of(const RunLayout& layout, const sweep::RunId& id,

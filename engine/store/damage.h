@@ -10,8 +10,8 @@
 
 namespace ed3r::store {
 
-// Every mission that does not match its checksums or is not in the plan, timesteps without a mission, and failures that
-// are not in the plan; by key. Reads everything. `on_whole` is called for each mission that is whole, in canonical order,
+// Every mission that does not match its checksums or is not in the plan, timesteps without a mission, failures and
+// times that are not in the plan; by key. UserError where SQLite's own check finds the file's trees damaged. Reads everything. `on_whole` is called for each mission that is whole, in canonical order,
 // with its timesteps loaded.
 std::vector<DamagedMission> FindDamage(Connection& database, const RunLayout& layout,
                                        const std::function<void(const MissionCursor&)>& on_whole = {});

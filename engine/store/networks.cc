@@ -79,6 +79,12 @@ FlownNetworks ReadNetworks(Connection& database, const RunLayout& layout) {
                                   database.file(), use.agent, use.sha256));
     networks.uses.push_back(use);
   }
+  if (!NetworkFilesMatch(database))
+    throw UserError(
+        fmt::format("{}: the file is damaged: the names of its networks, or which file is whose, do not "
+                    "match their checksum; "
+                    "'ed3r run SWEEP' puts them again",
+                    database.file()));
   return networks;
 }
 

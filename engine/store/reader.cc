@@ -101,25 +101,34 @@ std::vector<Session> ResultReader::Sessions() {
   return sessions;
 }
 
-void ResultReader::ForEachMission(Steps steps, const MissionVisitor& visit) { Visit("", steps, visit); }
+void ResultReader::ForEachMission(Steps steps, const MissionVisitor& visit) { Visit("", {}, steps, visit); }
 
 void ResultReader::ForEachMission(int stage, int arm, Steps steps, const MissionVisitor& visit) {
-  Visit(fmt::format("WHERE missions.run = {}", layout_.RunIndex(stage, arm)), steps, visit);
+  const std::int64_t run = layout_.RunIndex(stage, arm);
+  Visit(fmt::format("WHERE missions.run = {}", run), run, steps, visit);
 }
 
 void ResultReader::ForEachMission(int stage, int arm, int first, int end, Steps steps,
                                   const MissionVisitor& visit) {
-  Visit(fmt::format("WHERE missions.run = {} AND missions.mission >= {} AND missions.mission < {}",
-                    layout_.RunIndex(stage, arm), first, end),
-        steps, visit);
+  const std::int64_t run = layout_.RunIndex(stage, arm);
+  Visit(fmt::format("WHERE missions.run = {} AND missions.mission >= {} AND missions.mission < {}", run,
+                    first, end),
+        run, steps, visit);
 }
 
-void ResultReader::Visit(const std::string& where, Steps steps, const MissionVisitor& visit) {
+void ResultReader::Visit(const std::string& where, std::optional<std::int64_t> run, Steps steps,
+                         const MissionVisitor& visit) {
   const Transaction moment(database_, Transaction::Kind::kRead);
   MissionCursor cursor(database_, layout_, where, steps);
-  while (cursor.Next())
+  while (cursor.Next()) {
+    if (run && cursor.run() != *run)
+      throw UserError(fmt::format(
+          "{}: the file is damaged: {} is among the missions of another arm; it cannot be repaired: fly it "
+          "again into another --out",
+          database_.file(), layout_.DescribeKeys(cursor.run(), cursor.mission())));
     visit({cursor.Checked(), cursor.record(), cursor.session(), cursor.wall_s(), cursor.checksum(),
            cursor.steps_checksum(), cursor.KeepsTimesteps()});
+  }
 }
 
 void ResultReader::NeedTimesteps(int stage) const {
@@ -149,8 +158,9 @@ StoredMission ResultReader::LoadMission(const sweep::RunId& id) {
     throw UserError(fmt::format("{}: no mission {} of arm {} of stage {} in the plan", dir_, id.mission,
                                 id.arm, id.stage));
   std::optional<StoredMission> loaded;
-  Visit(fmt::format("WHERE missions.run = {} AND missions.mission = {}", layout_.RunIndex(id), id.mission),
-        Steps::kLoad, [&](const StoredMission& mission) { loaded = mission; });
+  const std::int64_t run = layout_.RunIndex(id);
+  Visit(fmt::format("WHERE missions.run = {} AND missions.mission = {}", run, id.mission), run, Steps::kLoad,
+        [&](const StoredMission& mission) { loaded = mission; });
   if (!loaded) throw UserError(fmt::format("{}: {} is not stored", dir_, layout_.Describe(id)));
   return *loaded;
 }

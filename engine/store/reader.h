@@ -101,7 +101,9 @@ class ResultReader {
   std::vector<DamagedMission> FindDamage();
 
  private:
-  void Visit(const std::string& where, Steps steps, const MissionVisitor& visit);
+  // `run`: whose missions alone are asked for.
+  void Visit(const std::string& where, std::optional<std::int64_t> run, Steps steps,
+             const MissionVisitor& visit);
 
   std::string dir_;
   Connection database_;

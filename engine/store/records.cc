@@ -12,11 +12,12 @@ namespace ed3r::store {
 RecordWriter::RecordWriter(Connection& database, const RunLayout& layout)
     : layout_(layout),
       tables_(database),
+      seals_(database),
       insert_mission_(
           database,
           fmt::format("INSERT INTO missions (run, mission, checksum, steps_checksum, {}{}) VALUES ({}{})",
-                      ColumnNames<mission::MissionRecord>(), tables_.sealed() ? ", seal" : "",
-                      Placeholders<mission::MissionRecord>(4), tables_.sealed() ? ", ?" : "")),
+                      ColumnNames<mission::MissionRecord>(), seals_.there() ? ", seal" : "",
+                      Placeholders<mission::MissionRecord>(4), seals_.there() ? ", ?" : "")),
       insert_step_(database, fmt::format("INSERT INTO timesteps (run, mission, {}) VALUES ({})",
                                          ColumnNames<mission::TimestepRecord>(),
                                          Placeholders<mission::TimestepRecord>(2))),
@@ -57,9 +58,9 @@ void RecordWriter::InsertRecord(const sweep::RunId& id, const mission::MissionRe
   insert_mission_.Bind(2, checksums.mission);
   insert_mission_.Bind(3, checksums.steps);
   BindColumns(insert_mission_, 4, record);
-  if (tables_.sealed())
+  if (seals_.there())
     insert_mission_.Bind(4 + static_cast<int>(ColumnsOf<mission::MissionRecord>().size()),
-                         tables_.Seal(checksums.mission));
+                         seals_.Of(checksums.mission, run, record.network));
   insert_mission_.Run();
   delete_failure_.Run(run, mission);
 }
@@ -115,19 +116,19 @@ MissionCursor::MissionCursor(Connection& database, const RunLayout& layout, cons
     : database_(database),
       layout_(layout),
       tables_(database),
+      seals_(database),
       with_steps_(steps == Steps::kLoad),
-      select_(
-          database,
-          fmt::format(
-              "SELECT missions.run, missions.mission, session, wall_s, {}, {}, {} FROM missions LEFT JOIN "
-              "timings USING (run, mission) {} ORDER BY missions.run, missions.mission",
-              tables_.checked() ? "checksum, steps_checksum" : "'', ''", tables_.sealed() ? "seal" : "''",
-              tables_.missions().selection(), where)),
+      select_(database, fmt::format("SELECT missions.run, missions.mission, session, wall_s, {}, {}, {} FROM "
+                                    "missions NOT INDEXED LEFT JOIN "
+                                    "timings USING (run, mission) {} ORDER BY missions.run, missions.mission",
+                                    tables_.checked() ? "checksum, steps_checksum" : "'', ''",
+                                    seals_.there() ? "seal" : "''", tables_.missions().selection(), where)),
       select_steps_(database, fmt::format("SELECT {} FROM timesteps WHERE run = ? AND mission = ? ORDER BY k",
                                           tables_.timesteps().selection())) {}
 
 bool MissionCursor::Seek(std::int64_t run, std::int64_t mission) {
   select_.Reset();
+  last_ = kBeforeAll;
   select_.Bind(0, run);
   select_.Bind(1, mission);
   return Next();
@@ -139,7 +140,21 @@ bool MissionCursor::Next() {
   return true;
 }
 
+// A tree that leads astray shows in its keys: rows twice, rows that another place of it holds.
+void MissionCursor::CheckOrder() {
+  const std::pair key{run(), mission()};
+  if (key <= last_)
+    throw UserError(
+        fmt::format("{}: the file is damaged: {} is where a mission after {} belongs; it cannot be repaired: "
+                    "fly it again "
+                    "into another --out",
+                    database_.file(), layout_.DescribeKeys(key.first, key.second),
+                    layout_.DescribeKeys(last_.first, last_.second)));
+  last_ = key;
+}
+
 void MissionCursor::Load() {
+  CheckOrder();
   checksum_ = select_.Text(4);
   steps_checksum_ = select_.Text(5);
   seal_ = select_.Text(6);
@@ -163,12 +178,12 @@ void MissionCursor::Load() {
   if (Damaged()) damage_.name = layout_.Describe(id_);
 }
 
-std::string MissionCursor::WhatIsWrong(const sweep::RunId& id) const {
+std::string MissionCursor::WhatIsWrong(const sweep::RunId& id) {
   if (!tables_.checked()) return "";
   if (tables_.MissionChecksum(layout_, id, record_, steps_checksum_) != checksum_)
     return "its record does not match its checksum";
-  if (tables_.sealed() && !tables_.IsSealed(checksum_, seal_))
-    return "it was not flown by this run's recipe: somebody has put a mission of another run here";
+  if (seals_.there() && !seals_.Fits(checksum_, run(), record_.network, seal_))
+    return "its seal is not of this run's recipe and networks: a mission of another run, or a damaged seal";
   if (!with_steps_) return "";
   if (!tables_.KeepsTimesteps(id.stage, record_))
     return record_.steps.empty() ? "" : "it has timesteps, which its sweep leaves out (store.timesteps)";

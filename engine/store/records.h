@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/mission/record.h"
 #include "engine/store/checksums.h"
 #include "engine/store/layout.h"
+#include "engine/store/seals.h"
 #include "engine/store/sqlite.h"
 
 namespace ed3r::store {
@@ -45,6 +47,7 @@ class RecordWriter {
 
   const RunLayout& layout_;
   RecordTables tables_;
+  Seals seals_;
   Statement insert_mission_, insert_step_, insert_timing_, insert_failure_, delete_failure_;
 };
 
@@ -72,7 +75,8 @@ struct DamagedMission {
 // One line: the file, the mission, what is wrong with it and what to do.
 std::string DamageText(const std::string& file, const DamagedMission& damage);
 
-// Goes through missions in plan order and compares each with its checksums.
+// Goes through missions in plan order and compares each with its checksums. UserError where the file does not give them in
+// that order.
 class MissionCursor {
  public:
   // `where` selects among the columns of the table missions, with `?` for what Seek gives; "" for all. With
@@ -102,18 +106,23 @@ class MissionCursor {
   static constexpr char kOneMission[] = "WHERE missions.run = ? AND missions.mission = ?";
 
  private:
+  static constexpr std::pair<std::int64_t, std::int64_t> kBeforeAll{INT64_MIN, INT64_MIN};
+
+  void CheckOrder();
   void Load();
-  std::string WhatIsWrong(const sweep::RunId& id) const;
+  std::string WhatIsWrong(const sweep::RunId& id);
 
   Connection& database_;
   const RunLayout& layout_;
   RecordTables tables_;
+  Seals seals_;
   bool with_steps_;
   Statement select_, select_steps_;
   mission::MissionRecord record_;
   std::string checksum_, steps_checksum_, seal_;
   DamagedMission damage_;
   sweep::RunId id_;
+  std::pair<std::int64_t, std::int64_t> last_ = kBeforeAll;  // the keys of the mission before
 };
 
 }  // namespace ed3r::store

@@ -1,6 +1,7 @@
 #include "engine/store/schema.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cstdint>
@@ -14,15 +15,16 @@
 #include "engine/mission/record.h"
 #include "engine/store/checksums.h"
 #include "engine/store/columns.h"
-#include "engine/store/origins.h"
 #include "engine/store/records.h"
+#include "engine/store/seals.h"
 #include "engine/store/words.h"
 
 namespace ed3r::store {
 namespace {
 
-constexpr std::int64_t kApplicationId = 0x45443352;  // "ED3R"
-constexpr char kUsesKey[] = "networks";              // in the recipe: a checksum over flown_networks
+constexpr std::int64_t kApplicationId = 0x45443352;   // "ED3R"
+constexpr char kUsesKey[] = "networks";               // in the recipe: a checksum over flown_networks
+constexpr char kNetworkFilesKey[] = "network_files";  // and one over networks
 
 std::string TableDefinitions() {
   return fmt::format(R"(
@@ -113,6 +115,17 @@ std::string UsesChecksum(Connection& database) {
   return sha.Hex();
 }
 
+// Over the networks by what they compute, their names and the checksums of their files.
+std::string NetworkFilesChecksum(Connection& database) {
+  std::string bytes;
+  Statement rows(database, "SELECT sha256, name, checksum FROM networks ORDER BY sha256");
+  while (rows.Step())
+    for (int column = 0; column < rows.Columns(); ++column) AppendText(bytes, rows.Text(column));
+  Sha256 sha;
+  sha.Update(bytes);
+  return sha.Hex();
+}
+
 // A view may compute without end and a trigger may change what is written: whoever gives a file away decides what they do.
 void RefuseForeignSchema(Connection& database) {
   Statement select(
@@ -124,6 +137,31 @@ void RefuseForeignSchema(Connection& database) {
     throw UserError(fmt::format("{}: an ed3r file that somebody has changed: '{}' is a {}, where ed3r has {}",
                                 database.file(), select.Text(1), select.Text(0),
                                 select.Text(0) == "trigger" ? "none" : "a table"));
+}
+
+// Without its key a table holds rows twice, and joins of it count them so.
+void CheckKeys(Connection& database, int version) {
+  struct Table {
+    const char* name;
+    std::vector<std::string> key;
+    int since;
+  };
+  const std::vector<std::string> mission = {"run", "mission"};
+  for (const auto& [name, key, since] :
+       {Table{"missions", mission, 1}, Table{"timesteps", {"run", "mission", "k"}, 1},
+        Table{"timings", mission, 1}, Table{"failures", mission, 1}, Table{"networks", {"sha256"}, 2},
+        Table{"flown_networks", {"run", "seed", "agent"}, 2}, Table{"sessions", {"session"}, 1}}) {
+    if (version < since) continue;
+    Statement columns(database,
+                      fmt::format("SELECT name FROM pragma_table_info('{}') WHERE pk > 0 ORDER BY pk", name));
+    std::vector<std::string> found;
+    while (columns.Step()) found.push_back(columns.Text(0));
+    if (found != key)
+      throw UserError(fmt::format(
+          "{}: an ed3r file that somebody has changed: its table {} has lost its key ({}); fly it again into "
+          "another --out",
+          database.file(), name, fmt::join(key, ", ")));
+  }
 }
 
 std::optional<std::string> RecipeValue(Connection& database, std::string_view key) {
@@ -172,6 +210,7 @@ FileKind CheckFile(Connection& database, FileUse use) {
     throw UserError(fmt::format("{}: written by an older ed3r (format {}, this one reads 1 and up)",
                                 database.file(), version));
   RefuseForeignSchema(database);
+  CheckKeys(database, static_cast<int>(version));
   const RecordTables tables(database);
   if (version >= 2) CheckSeals(database);
   if (use == FileUse::kWrite && (version < kSchemaVersion || !tables.complete()))
@@ -262,7 +301,14 @@ void ContinueRecipe(Connection& database, const Recipe& recipe) {
 void SealNetworks(Connection& database) {
   Statement seal(database, "INSERT OR REPLACE INTO recipe VALUES (?, ?)");
   seal.Run(kUsesKey, UsesChecksum(database));
+  seal.Run(kNetworkFilesKey, NetworkFilesChecksum(database));
   SealRecipe(database);
+}
+
+bool NetworkFilesMatch(Connection& database) {
+  const std::optional<std::string> files =
+      RecipeValue(database, kNetworkFilesKey);  // none in files of before
+  return !files || *files == NetworkFilesChecksum(database);
 }
 
 Recipe ReadRecipe(Connection& database) {

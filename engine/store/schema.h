@@ -1,7 +1,7 @@
 // The tables of DIR/results.sqlite, and how a file is recognised.
 //
-//   recipe          key, value: sweep, seed, plan, origins (origins.h), a checksum over all tables down to runs, and one
-//                   over flown_networks
+//   recipe          key, value: sweep, seed, plan, origins (seals.h), a checksum over all tables down to runs, and
+//                   two over networks and flown_networks
 //   code            subsystem, identity: see recipe.h
 //   inputs          name, fingerprint (of worlds and of detectors)
 //   files, places   the content of every file that missions read, where it is small enough; what the plan calls it
@@ -66,8 +66,11 @@ void CreateMissionsIndex(Connection& database);
 // Of a session that goes on with the same plan, perhaps by other code: adds what the file does not know of it.
 void ContinueRecipe(Connection& database, const Recipe& recipe);
 
-// Writes the checksum over flown_networks, after a change of it. Files of before have none until then. Call it in a transaction.
+// Writes the checksums over networks and flown_networks, after a change of them. Files of before have none until then. Call it in a transaction.
 void SealNetworks(Connection& database);
+
+// Whether the networks have the names, hashes and checksums that they were put with.
+bool NetworkFilesMatch(Connection& database);
 
 Recipe ReadRecipe(Connection& database);  // without notes and files: notes belong to sessions
 std::vector<InputFile> ReadFiles(Connection& database);

@@ -8,6 +8,7 @@
 
 #include "engine/store/columns.h"
 #include "engine/store/merge.h"
+#include "engine/store/seals.h"
 #include "tests/store/store_fixture.h"
 
 namespace ed3r::store {
@@ -65,11 +66,9 @@ TEST_F(ChecksumTest, AWholeMissionOfAnotherRunIsNamed) {
           ResultsIn(temp_ / "other") +
           "' AS other;"
           "INSERT INTO main.missions SELECT * FROM other.missions WHERE run = 3 AND mission = 6");
-  EXPECT_EQ(
-      DamagedIn(Run()),
-      std::vector<std::string>{
-          "stage online, arm ed3r-75, mission 6: it was not flown by this run's recipe: somebody has put a "
-          "mission of another run here"});
+  EXPECT_EQ(DamagedIn(Run()), std::vector<std::string>{"stage online, arm ed3r-75, mission 6: its seal is "
+                                                       "not of this run's recipe and networks: a mission "
+                                                       "of another run, or a damaged seal"});
   ExpectRepairable();
 }
 
@@ -87,6 +86,34 @@ TEST_F(ChecksumTest, OtherWorldsAndOtherCodeAreAnotherRun) {
     EXPECT_EQ(DamagedIn(Run()).size(), 1u);
     ExpectRepairable();
   }
+}
+
+// The recipe is one that the file has had, too: only the networks tell.
+TEST_F(ChecksumTest, AMissionThatAskedOtherNetworksIsNamed) {
+  FlownNetworks networks;
+  networks.files["aaaa"] = {"rc, seed 5", "model one"};
+  networks.uses.push_back({.stage = 2, .arm = 1, .seed = 5, .agent = "rc", .sha256 = "aaaa"});
+  mission::MissionRecord record = TestRecord({2, 1, 3});
+  record.network = 5;
+  const auto put = [&](const std::string& dir) {
+    const auto store = ResultStore::Open(dir, TestRecipe(), TestLayout());
+    store->PutNetworks(networks);
+    store->Put({2, 1, 3}, record, 0.25);
+    store->Commit();
+  };
+  put(temp_ / "one");
+  put(temp_ / "same");
+  networks.files = {{"bbbb", {"rc, seed 5", "model two"}}};
+  networks.uses[0].sha256 = "bbbb";
+  put(temp_ / "other");
+  const auto take = [&](const std::string& from) {
+    Sql(ResultsIn(temp_ / "one"), "ATTACH '" + ResultsIn(temp_ / from) +
+                                      "' AS other;"
+                                      "INSERT OR REPLACE INTO main.missions SELECT * FROM other.missions");
+    return DamagedIn(temp_ / "one").size();
+  };
+  EXPECT_EQ(take("same"), 0u);
+  EXPECT_EQ(take("other"), 1u);
 }
 
 TEST_F(ChecksumTest, MissionsOfEachCodeThatContinuedARunAreItsOwn) {
@@ -127,7 +154,8 @@ TEST_F(ChecksumTest, AFileOfBeforeHasNoSealsAndGoesOnWithout) {
   const auto store = ResultStore::Open(Run(), TestRecipe(), TestLayout());
   store->Put({0, 0, 1}, TestRecord({0, 0, 1}), 0.25);
   store->Commit();
-  EXPECT_FALSE(ResultReader(Run()).Tables().sealed());
+  Connection database(ResultsIn(Run()), Connection::Access::kReadOnly);
+  EXPECT_FALSE(HasSeals(database));
   EXPECT_EQ(store->Stored().size(), 61u);
   EXPECT_TRUE(store->FindDamage().empty());
 }

@@ -131,6 +131,28 @@ TEST(FlownNetworksTest, AUseWithoutItsNetworkIsDamage) {
                        "the file is damaged: it does not hold the rc network bbbb"));
 }
 
+// Each file matches its checksum: what has changed is whose it is, or its name.
+TEST(FlownNetworksTest, NetworksOfEachOthersNamesAreDamageUntilTheyArePutAgain) {
+  for (const char* change :
+       {"CREATE TEMP TABLE t AS SELECT * FROM networks; "
+        "UPDATE networks SET model = (SELECT model FROM t WHERE t.sha256 <> networks.sha256), "
+        "checksum = (SELECT checksum FROM t WHERE t.sha256 <> networks.sha256)",
+        "UPDATE networks SET name = 'robot, seed 2' WHERE sha256 = 'bbbb'"}) {
+    SCOPED_TRACE(change);
+    const TempDir temp;
+    WriteStore(temp / "run", {{2, 1, 0}});
+    ResultStore::Open(temp / "run", TestRecipe(), TestLayout())->PutNetworks(TwoNetworks());
+    Sql(ResultsIn(temp / "run"), change);
+    const std::string damage =
+        "the names of its networks, or which file is whose, do not match their checksum";
+    EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader(temp / "run").Networks(); }), damage));
+    EXPECT_TRUE(Contains(UserErrorOf([&] { MergeStores(temp / "new", {temp / "run"}); }), damage));
+    ResultStore::Open(temp / "run", TestRecipe(), TestLayout())->PutNetworks(TwoNetworks());
+    EXPECT_EQ(ResultReader(temp / "run").Networks().files.at("bbbb").name, "rc, seed 2");
+    EXPECT_EQ(ResultReader(temp / "run").Networks().files.at("bbbb").model, "model two");
+  }
+}
+
 // Each is a network that is stored and whole: what has changed is whose it is.
 TEST(FlownNetworksTest, ANetworkOfAnotherArmOrSeedIsDamage) {
   for (const char* change :
