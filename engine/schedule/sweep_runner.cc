@@ -116,7 +116,8 @@ class SweepRun {
         layout_(store::LayoutOf(plan)),
         store_(store::ResultStore::Open(
             options.dir, RecipeOf(plan, inputs, options), layout_,
-            options.accept_mixed ? store::OtherCode::kAccept : store::OtherCode::kRefuse)) {
+            options.accept_mixed ? store::OtherCode::kAccept : store::OtherCode::kRefuse,
+            options.repair ? store::Repair::kYes : store::Repair::kNo)) {
     RemoveLeftovers(options.dir);
     RemoveLeftovers(options.cache_dir);
     LookForDamage();
@@ -162,11 +163,12 @@ class SweepRun {
 
   // Nothing is built on damaged missions, and a run that ends well leaves none behind.
   void LookForDamage() {
+    summary_.repaired = store_->Repaired();
     const std::vector<store::DamagedMission> damage = store_->FindDamage();
     if (damage.empty()) return;
     if (!options_.repair) throw UserError(store::DamageText(options_.dir, damage.front()));
     store_->Remove(damage);
-    summary_.repaired = damage;
+    summary_.repaired.insert(summary_.repaired.end(), damage.begin(), damage.end());
   }
 
   const std::string& FoundationDir() const {

@@ -16,6 +16,9 @@ namespace ed3r::store {
 std::vector<DamagedMission> FindDamage(Connection& database, const RunLayout& layout,
                                        const std::function<void(const MissionCursor&)>& on_whole = {});
 
+// What to do with damaged missions where the plan grows over them.
+enum class Repair { kNo, kYes };
+
 // Deletes all that the file holds of these missions, so that they count as missing.
 void RemoveMissions(Connection& database, const std::vector<DamagedMission>& missions);
 

@@ -33,8 +33,9 @@ std::string HostName() {
 
 class SqliteStore final : public ResultStore {
  public:
-  SqliteStore(const std::string& dir, const Recipe& recipe, const RunLayout& layout, OtherCode other_code)
-      : layout_(layout), file_(dir, recipe, layout, other_code) {
+  SqliteStore(const std::string& dir, const Recipe& recipe, const RunLayout& layout, OtherCode other_code,
+              Repair repair)
+      : layout_(layout), file_(dir, recipe, layout, other_code, repair) {
     writer_.emplace(file_.database(), layout_);
     BeginSession(recipe);
   }
@@ -52,6 +53,8 @@ class SqliteStore final : public ResultStore {
   const RunLayout& Layout() const override { return layout_; }
 
   std::string Grown() const override { return file_.grown(); }
+
+  std::vector<DamagedMission> Repaired() const override { return file_.repaired(); }
 
   std::vector<sweep::RunId> Stored() const override { return ReadStored(file_.database(), layout_); }
 
@@ -152,8 +155,8 @@ class SqliteStore final : public ResultStore {
 }  // namespace
 
 std::unique_ptr<ResultStore> ResultStore::Open(const std::string& dir, const Recipe& recipe,
-                                               const RunLayout& layout, OtherCode other_code) {
-  return std::make_unique<SqliteStore>(dir, recipe, layout, other_code);
+                                               const RunLayout& layout, OtherCode other_code, Repair repair) {
+  return std::make_unique<SqliteStore>(dir, recipe, layout, other_code, repair);
 }
 
 }  // namespace ed3r::store

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/mission/record.h"
+#include "engine/store/damage.h"
 #include "engine/store/layout.h"
 #include "engine/store/networks.h"
 #include "engine/store/recipe.h"
@@ -22,10 +23,11 @@ namespace ed3r::store {
 class ResultStore {
  public:
   // Makes DIR and the file when missing, continues it when there; begins a session with recipe.notes. A plan that asks for
-  // more missions or arms than the file's, and leaves those there as they are, takes its place (growth.h).
+  // more missions or arms than the file's, and leaves those there as they are, takes its place (growth.h); `repair` says what
+  // becomes of damaged missions then.
   static std::unique_ptr<ResultStore> Open(const std::string& dir, const Recipe& recipe,
-                                           const RunLayout& layout,
-                                           OtherCode other_code = OtherCode::kRefuse);
+                                           const RunLayout& layout, OtherCode other_code = OtherCode::kRefuse,
+                                           Repair repair = Repair::kNo);
 
   // Ends the session. What was not committed is dropped.
   virtual ~ResultStore() = default;
@@ -34,6 +36,9 @@ class ResultStore {
 
   // What the plan has got since the last session: "stage online: 20 missions per arm for 10"; "" where it is the same.
   virtual std::string Grown() const = 0;
+
+  // Damaged missions that were taken out before the plan grew.
+  virtual std::vector<DamagedMission> Repaired() const = 0;
 
   // Finished missions in plan order. Failed ones are not among them: they are flown again. UserError when one is not in
   // the plan.

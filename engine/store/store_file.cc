@@ -88,16 +88,16 @@ std::string CheckSameRun(Connection& database, const std::string& dir, const Rec
 }  // namespace
 
 StoreFile::StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout,
-                     OtherCode other_code)
+                     OtherCode other_code, Repair repair)
     : dir_(dir) {
   first_created_dir_ = MakeDirectory(dir);
   Lock();
   created_ = !fs::exists(FileIn(dir));
   try {
-    OpenOrCreate(recipe, layout, other_code);
+    OpenOrCreate(recipe, layout, other_code, repair);
   } catch (const SharedMemoryError&) {
     rollback_journal_ = true;
-    OpenOrCreate(recipe, layout, other_code);
+    OpenOrCreate(recipe, layout, other_code, repair);
   }
 }
 
@@ -145,7 +145,16 @@ void StoreFile::SetJournal(bool empty) {
   database_->Execute("PRAGMA synchronous = NORMAL");
 }
 
-void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code) {
+// Before anything is written: a run that is refused stays as it was, and what is in no plan would get another's number.
+void StoreFile::CheckBeforeGrowth(Repair repair) {
+  repaired_ = FindDamage(*database_, ReadLayout(*database_));
+  if (repaired_.empty()) return;
+  if (repair == Repair::kNo) throw UserError(DamageText(database_->file(), repaired_.front()));
+  RemoveMissions(*database_, repaired_);
+}
+
+void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code,
+                             Repair repair) {
   Connect();
   const bool empty = CheckFile(*database_, FileUse::kWrite) == FileKind::kEmpty;
   if (!empty) grown_ = CheckSameRun(*database_, dir_, recipe, layout, other_code);
@@ -153,12 +162,14 @@ void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout, Othe
   database_->Execute(fmt::format("PRAGMA cache_size = -{}", kCacheKib));
   database_->Execute("PRAGMA secure_delete = OFF");  // Debian's default wipes freed space
   Transaction transaction(*database_, Transaction::Kind::kWrite);
-  if (empty)
+  if (empty) {
     CreateTables(*database_, recipe, layout);
-  else if (grown_.empty())
+  } else if (grown_.empty()) {
     ContinueRecipe(*database_, recipe);
-  else
+  } else {
+    CheckBeforeGrowth(repair);
     Grow(*database_, recipe, layout);
+  }
   AddFailureKind(*database_);
   CreateMissionsIndex(*database_);
   transaction.Commit();

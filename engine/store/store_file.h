@@ -3,7 +3,9 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "engine/store/damage.h"
 #include "engine/store/directory_lock.h"
 #include "engine/store/layout.h"
 #include "engine/store/owner_file.h"
@@ -22,9 +24,9 @@ class StoreFile {
   // Makes DIR and the file when missing. UserError, and nothing changed, when the file holds the results of
   // another recipe or layout, is not a store, or has another writer; results of other code are taken on and their
   // recipe then names both where `other_code` accepts it. A recipe that asks for more of the same grows the file
-  // (growth.h).
+  // (growth.h), unless there are damaged missions in it: UserError, or they are taken out before with Repair::kYes.
   StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout,
-            OtherCode other_code = OtherCode::kRefuse);
+            OtherCode other_code = OtherCode::kRefuse, Repair repair = Repair::kNo);
   ~StoreFile();
   StoreFile(const StoreFile&) = delete;
   StoreFile& operator=(const StoreFile&) = delete;
@@ -33,6 +35,8 @@ class StoreFile {
   bool created() const { return created_; }
   // What the plan has got since the file was written last; "" where it is the same.
   const std::string& grown() const { return grown_; }
+  // What was taken out before it grew.
+  const std::vector<DamagedMission>& repaired() const { return repaired_; }
 
   // StoreError once another writer has taken the directory over, which it does only when this one seemed dead.
   void CheckOwned() const;
@@ -44,12 +48,14 @@ class StoreFile {
   void Lock();
   void Connect();
   void SetJournal(bool empty);
-  void OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code);
+  void OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code, Repair repair);
+  void CheckBeforeGrowth(Repair repair);
 
   std::string dir_;
   std::string first_created_dir_;  // of the path that leads to the file; "" where all was there
   bool created_ = false;
   std::string grown_;
+  std::vector<DamagedMission> repaired_;
   bool rollback_journal_ = false;
   // One of the two is held; both outlive the connection.
   std::unique_ptr<DirectoryLock> lock_;

@@ -47,6 +47,7 @@ class FakeStore final : public store::ResultStore {
  public:
   const store::RunLayout& Layout() const override { return layout_; }
   std::string Grown() const override { return ""; }
+  std::vector<store::DamagedMission> Repaired() const override { return {}; }
   std::vector<sweep::RunId> Stored() const override { return {}; }
   void Put(const sweep::RunId& id, const mission::MissionRecord&, double wall_s) override {
     std::this_thread::sleep_for(put_takes);

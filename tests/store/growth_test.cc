@@ -114,6 +114,33 @@ TEST_F(GrowthTest, MoreMissionsAreARunOfThatManyFromTheStart) {
   EXPECT_EQ(DigestOfDir(Dir()), Fresh(more));
 }
 
+// What is refused stays as it was: the plan of before still flies it.
+TEST_F(GrowthTest, ADamagedRunDoesNotGrow) {
+  const sweep::SweepPlan few = Masses({1, 3}, 10), more = Masses({1, 2, 3}, 12);
+  for (const char* change :
+       {"UPDATE missions SET total_j = 1 WHERE run = 0 AND mission = 3",
+        "INSERT INTO timings VALUES (-2, 3, 1, 1.0)", "INSERT INTO timings VALUES (2, 3, 1, 1.0)"}) {
+    SCOPED_TRACE(change);
+    const TempDir temp;
+    const std::string dir = temp / "run";
+    Fly(dir, few);
+    {
+      Connection database(ResultsIn(dir), Connection::Access::kReadWrite);
+      database.Execute(change);
+    }
+    EXPECT_TRUE(Contains(UserErrorOf([&] { Open(dir, more); }), "is damaged"));
+    EXPECT_EQ(ResultReader(dir).Layout().stages[0].missions, 10);
+    {
+      const auto store =
+          ResultStore::Open(dir, RecipeOf(more), LayoutOf(more), OtherCode::kRefuse, Repair::kYes);
+      EXPECT_EQ(store->Repaired().size(), 1u);
+      EXPECT_TRUE(store->FindDamage().empty());
+    }
+    Fly(dir, more);
+    EXPECT_EQ(DigestOfDir(dir), Fresh(more));
+  }
+}
+
 TEST_F(GrowthTest, AValueMoreOnAnAxisMovesTheArmsBehindIt) {
   const sweep::SweepPlan few = Masses({1, 3}, 10), more = Masses({0.5, 1, 2, 3}, 12);
   Fly(Dir(), few);
