@@ -101,6 +101,9 @@ void PrintText(const Found& found) {
   fmt::print("{}, {} growing", Counted(static_cast<std::int64_t>(found.stores), "store"), found.growing);
   if (const std::string end = found.ExpectedEnd(); !end.empty()) fmt::print("; all done by about {}", end);
   fmt::print("\n");
+  fmt::print(
+      "counted, not compared with their checksums: 'ed3r verify' of a store does, and so does 'ed3r "
+      "merge'\n");
   for (const auto& [store, why] : found.unreadable) fmt::print("not counted: {}\n", why);
 }
 

@@ -80,6 +80,10 @@ void CheckPlan(const sweep::SweepPlan& plan) {
 
 Inputs::Inputs(const sweep::SweepPlan& plan) {
   CheckPlan(plan);
+  try {
+    files_ = ReadInputFiles(plan);
+  } catch (const UserError&) {
+  }
   scenes_ = LoadScenes(plan);
   for (const sweep::Stage& stage : plan.stages)
     for (const sweep::Arm& arm : stage.arms)
@@ -128,6 +132,18 @@ agents::Networks Inputs::NetworksOf(const Config& config) const {
     own.direct_robot = robot->direct();
   }
   return own;
+}
+
+InputFiles Inputs::Files(const sweep::SweepPlan& plan) const {
+  InputFiles now = ReadInputFiles(plan);
+  if (!files_ || files_->places != now.places || files_->files.size() != now.files.size())
+    throw UserError(
+        fmt::format("{}: files that it reads came or went while they were read; start it again", plan.file));
+  for (std::size_t i = 0; i < now.files.size(); ++i)
+    if (!(files_->files[i] == now.files[i]))
+      throw UserError(
+          fmt::format("{}: {} was changed while it was read; start it again", plan.file, now.files[i].name));
+  return now;
 }
 
 const world::Scene& Inputs::SceneOf(const Config& config) const { return *scenes_.at(config.mission.world); }

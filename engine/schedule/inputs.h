@@ -3,11 +3,13 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "engine/agents/context.h"
 #include "engine/perception/pixels/pixel_sensor.h"
 #include "engine/rfnn/onnx_network.h"
+#include "engine/schedule/input_files.h"
 #include "engine/sweep/plan.h"
 #include "engine/world/scene.h"
 
@@ -27,6 +29,9 @@ class Inputs {
   const perception::PixelTier* PixelsOf(const Config& config) const;  // null in the fast tier
   agents::Networks NetworksOf(const Config& config) const;  // the user's own; null where they are trained
 
+  // The files as they were before the first of them was opened, for who keeps them. UserError where one has changed since.
+  InputFiles Files(const sweep::SweepPlan& plan) const;
+
   // Fingerprint of everything in a file or in the program's data that results depend on, by name.
   std::map<std::string, std::string> Fingerprints(const sweep::SweepPlan& plan) const;
 
@@ -34,6 +39,7 @@ class Inputs {
   void AddPixels(const Config& config);
   void AddNetworks(const Config& config);
 
+  std::optional<InputFiles> files_;  // none where one cannot be read: whoever needs it tells
   std::map<std::string, std::shared_ptr<const world::Scene>> scenes_;  // by mission.world
   std::map<std::string, perception::PixelTier> pixels_;                // by PixelKey
   std::map<std::string, std::shared_ptr<const rfnn::OnnxNetwork>> rc_networks_, robot_networks_;  // by path

@@ -31,7 +31,7 @@ namespace {
 bool IsOutside(const sweep::Arm& arm) { return agents::FindStrategy(arm.config.mission.strategy).outside; }
 
 store::Recipe RecipeOf(const sweep::SweepPlan& plan, const Inputs& inputs, const SweepOptions& options) {
-  InputFiles files = ReadInputFiles(plan);
+  InputFiles files = inputs.Files(plan);
   store::CodeIdentities code = CodeOf(plan);
   if (!options.outside_identity.empty()) code["policy"] = {options.outside_identity};
   return {.plan_text = plan.CanonicalText(),

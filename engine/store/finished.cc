@@ -9,6 +9,8 @@
 #include <filesystem>
 
 #include "engine/core/check.h"
+#include "engine/core/sha256.h"
+#include "engine/store/columns.h"
 #include "engine/store/directory_lock.h"
 #include "engine/store/file_system.h"
 #include "engine/store/schema.h"
@@ -55,6 +57,15 @@ bool IsBeingWritten(const std::string& file) {
   return fs::exists(file + "-wal") || fs::exists(file + "-journal");
 }
 
+std::string ChecksumOf(const FinishedRun& run) {
+  std::string bytes;
+  for (const std::string& text : {run.made_by, std::to_string(run.missions), run.table, run.networks})
+    AppendText(bytes, text);
+  Sha256 sha;
+  sha.Update(bytes);
+  return sha.Hex();
+}
+
 void Write(const std::string& file, const FinishedRun& run) {
   const std::int64_t counter = ChangeCounter(file) + 1;
   timespec now = {};
@@ -67,9 +78,10 @@ void Write(const std::string& file, const FinishedRun& run) {
         "DROP TABLE IF EXISTS finished; CREATE TABLE finished (made_by TEXT NOT NULL, change_counter INTEGER "
         "NOT NULL, "
         "written_ns INTEGER NOT NULL, missions INTEGER NOT NULL, results TEXT NOT NULL, networks TEXT NOT "
-        "NULL) STRICT");
-    Statement put(database, "INSERT INTO finished VALUES (?, ?, ?, ?, ?, ?)");
-    put.Run(run.made_by, counter, now.tv_sec * kNsPerS + now.tv_nsec, run.missions, run.table, run.networks);
+        "NULL, checksum TEXT NOT NULL) STRICT");
+    Statement put(database, "INSERT INTO finished VALUES (?, ?, ?, ?, ?, ?, ?)");
+    put.Run(run.made_by, counter, now.tv_sec * kNsPerS + now.tv_nsec, run.missions, run.table, run.networks,
+            ChecksumOf(run));
     transaction.Commit();
   }
   const timespec times[2] = {now, now};
@@ -89,16 +101,19 @@ std::optional<FinishedRun> RecallFinished(const std::string& dir, const std::str
   const std::string file = FileIn(dir);
   if (!fs::exists(file) || IsBeingWritten(file)) return std::nullopt;
   Connection database(file, Connection::Access::kReadOnly);
-  if (database.Int("SELECT count(*) FROM sqlite_schema WHERE name = 'finished'") == 0) return std::nullopt;
-  Statement select(
-      database,
-      "SELECT change_counter, written_ns, missions, results, networks FROM finished WHERE made_by = ?");
+  if (database.Int("SELECT count(*) FROM pragma_table_info('finished') WHERE name = 'checksum'") == 0)
+    return std::nullopt;
+  Statement select(database,
+                   "SELECT change_counter, written_ns, missions, results, networks, checksum FROM finished "
+                   "WHERE made_by = ?");
   select.Bind(0, made_by);
   const FileTimes times = TimesOf(file);
   if (!select.Step() || select.Int(0) != ChangeCounter(file) || select.Int(1) != times.written_ns ||
       times.changed_ns - times.written_ns > kLongestDatingNs)
     return std::nullopt;
-  return FinishedRun{made_by, select.Int(2), select.Text(3), select.Text(4)};
+  FinishedRun run{made_by, select.Int(2), select.Text(3), select.Text(4)};
+  if (select.Text(5) != ChecksumOf(run)) return std::nullopt;
+  return run;
 }
 
 }  // namespace ed3r::store

@@ -1,8 +1,8 @@
 // A run that was found whole and complete, remembered in its own file, so that the same command again need not read all of it.
 //
 // It is believed only by the program that wrote it and while the file is untouched: SQLite's change counter and the time of
-// the last write must be what they were, and nothing may have changed the file or its times since. Damage below the file system
-// is found by 'ed3r verify' and by whatever reads the damaged mission.
+// the last write must be what they were, nothing may have changed the file or its times since, and what was printed must match
+// its checksum. Damage of missions below the file system is found by 'ed3r verify' and by whatever reads them.
 #pragma once
 
 #include <cstdint>

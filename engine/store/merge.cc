@@ -168,8 +168,12 @@ void CheckWhole(Connection& database, const RunLayout& layout) {
   if (!damage.empty()) throw UserError(DamageText(database.file(), damage.front()));
 }
 
-bool SameDirectory(const std::string& a, const std::string& b) {
-  return std::filesystem::exists(a) && std::filesystem::exists(b) && std::filesystem::equivalent(a, b);
+// Also where the file is linked: it is one.
+bool SameStore(const std::string& a, const std::string& b) {
+  const std::filesystem::path one = std::filesystem::path(a) / kResultsFile,
+                              other = std::filesystem::path(b) / kResultsFile;
+  return std::filesystem::exists(one) && std::filesystem::exists(other) &&
+         std::filesystem::equivalent(one, other);
 }
 
 }  // namespace
@@ -179,7 +183,7 @@ MergeSummary MergeStores(const std::string& out, const std::vector<std::string>&
   const auto [recipe, layout] = CommonRecipe(dirs);
   // What is in `out` need not be copied; and a reader on it would keep its file in WAL mode.
   std::vector<std::string> others = dirs;
-  std::erase_if(others, [&](const std::string& dir) { return SameDirectory(dir, out); });
+  std::erase_if(others, [&](const std::string& dir) { return SameStore(dir, out); });
   StoreFile file(out, recipe, layout);
   try {
     Transaction transaction(file.database(), Transaction::Kind::kWrite);

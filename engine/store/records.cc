@@ -6,6 +6,7 @@
 
 #include "engine/core/check.h"
 #include "engine/store/columns.h"
+#include "engine/store/schema.h"
 
 namespace ed3r::store {
 
@@ -119,10 +120,11 @@ MissionCursor::MissionCursor(Connection& database, const RunLayout& layout, cons
       seals_(database),
       with_steps_(steps == Steps::kLoad),
       select_(database, fmt::format("SELECT missions.run, missions.mission, session, wall_s, {}, {}, {} FROM "
-                                    "missions NOT INDEXED LEFT JOIN "
+                                    "missions {} LEFT JOIN "
                                     "timings USING (run, mission) {} ORDER BY missions.run, missions.mission",
                                     tables_.checked() ? "checksum, steps_checksum" : "'', ''",
-                                    seals_.there() ? "seal" : "''", tables_.missions().selection(), where)),
+                                    seals_.there() ? "seal" : "''", tables_.missions().selection(),
+                                    kAlongTheKey, where)),
       select_steps_(database, fmt::format("SELECT {} FROM timesteps WHERE run = ? AND mission = ? ORDER BY k",
                                           tables_.timesteps().selection())) {}
 

@@ -375,7 +375,8 @@ RunLayout ReadLayout(Connection& database) {
 }
 
 std::vector<sweep::RunId> ReadStored(Connection& database, const RunLayout& layout) {
-  Statement select(database, "SELECT run, mission FROM missions NOT INDEXED ORDER BY run, mission");
+  Statement select(database,
+                   fmt::format("SELECT run, mission FROM missions {} ORDER BY run, mission", kAlongTheKey));
   std::vector<sweep::RunId> stored;
   while (select.Step()) {
     const std::optional<sweep::RunId> id = layout.Place(select.Int(0), select.Int(1));

@@ -38,6 +38,9 @@ namespace ed3r::store {
 
 inline constexpr char kResultsFile[] = "results.sqlite";
 inline constexpr char kMissionsIndex[] = "missions_by_run";
+// Walks the missions themselves, as SQLite calls the tree of their key. NOT INDEXED does not: with ORDER BY it takes the small
+// index, which may be damaged.
+inline constexpr char kAlongTheKey[] = "INDEXED BY sqlite_autoindex_missions_1";
 // Raise it when a table other than missions and timesteps changes; their columns are compared by name.
 inline constexpr int kSchemaVersion = 2;
 

@@ -11,10 +11,18 @@
 namespace ed3r::report {
 namespace {
 
-std::vector<mission::MissionRecord> LoadMissions(store::ResultReader& reader, int stage, int arm) {
-  std::vector<mission::MissionRecord> missions;
-  reader.ForEachMission(stage, arm, store::Steps::kSkip,
-                        [&](const store::StoredMission& mission) { missions.push_back(mission.record); });
+struct LoadedMissions {
+  std::vector<mission::MissionRecord> records;
+  std::int64_t end =
+      0;  // after the last one's number: where it is more than there are, some between are missing
+};
+
+LoadedMissions LoadMissions(store::ResultReader& reader, int stage, int arm) {
+  LoadedMissions missions;
+  reader.ForEachMission(stage, arm, store::Steps::kSkip, [&](const store::StoredMission& mission) {
+    missions.records.push_back(mission.record);
+    missions.end = mission.id.mission + 1;
+  });
   return missions;
 }
 
@@ -50,11 +58,15 @@ RunResults LoadRun(const std::string& dir) {
                                    [&](const figures::ArmPlan& p) { return p.stage == stage.name; });
     const std::optional<sweep::Precision> precision = plan == plans.end() ? std::nullopt : plan->precision;
     for (int a = 0; a < static_cast<int>(stage.arms.size()); ++a) {
-      metrics::ArmData arm{stage.name, stage.arms[a].name, LoadMissions(reader, s, a)};
+      LoadedMissions loaded = LoadMissions(reader, s, a);
+      metrics::ArmData arm{stage.name, stage.arms[a].name, std::move(loaded.records)};
       const auto flown = static_cast<std::int64_t>(arm.missions.size());
       // Counted from the missions at hand: more may have come in since the status was read.
       arm.failed = static_cast<int>(std::min(status[layout.RunIndex(s, a)].failed, stage.missions - flown));
-      if (!KnownWellEnough(arm, precision))
+      const std::int64_t between = loaded.end - flown - arm.failed;
+      if (precision && between > 0)
+        arm.missing = static_cast<int>(between);
+      else if (!KnownWellEnough(arm, precision))
         arm.missing = static_cast<int>(stage.missions - flown - arm.failed);
       results.arms.push_back(std::move(arm));
     }
@@ -70,7 +82,7 @@ double HalfWidth(const std::string& dir, int stage, int arm, int missions, const
   store::ResultReader reader(dir);
   const store::RunLayout::Stage& flown = reader.Layout().stages.at(static_cast<std::size_t>(stage));
   metrics::ArmData data{flown.name, flown.arms.at(static_cast<std::size_t>(arm)).name,
-                        LoadMissions(reader, stage, arm)};
+                        LoadMissions(reader, stage, arm).records};
   return HalfWidthOf(std::move(data), missions, metric);
 }
 

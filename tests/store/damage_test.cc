@@ -1,8 +1,10 @@
 // Files that are not what they should be: one line, no harm done.
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
+#include <iterator>
 
 #include "tests/store/store_fixture.h"
 
@@ -33,6 +35,74 @@ TEST(DamageTest, NothingThere) {
   fs::create_directories(temp / "empty");
   EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader reader(temp / "empty"); }),
                        "no results in it (results.sqlite is missing)"));
+}
+
+std::vector<unsigned char> BytesOf(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// The tree of the missions is walked, whatever the index says; SQLite's own check says what is wrong with that.
+TEST(DamageTest, AnIndexThatLeadsElsewhere) {
+  const TempDir temp;
+  WriteStore(temp / "run", AllMissions(TestLayout()));
+  const std::string digest = DigestOfDir(temp / "run");
+  Sql(ResultsIn(temp / "run"),
+      "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage FROM sqlite_schema "
+      "WHERE "
+      "name = 'timings') WHERE name = 'missions_by_run'");
+  EXPECT_EQ(DigestOfDir(temp / "run"), digest);
+  const std::string damage = "the file is damaged: SQLite's own check says";
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader(temp / "run").FindDamage(); }), damage));
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader(temp / "run").CheckWhole(); }), damage));
+  EXPECT_TRUE(Contains(
+      UserErrorOf([&] { ResultStore::Open(temp / "run", TestRecipe(), TestLayout())->FindDamage(); }),
+      damage));
+}
+
+// One child of the tree in another's place: its rows come twice, those of the other not at all.
+TEST(DamageTest, ATreeThatLeadsAstray) {
+  constexpr std::size_t kPageBytes = 16384, kCells = 3, kPointers = 12;
+  const TempDir temp;
+  WriteStore(temp / "run", AllMissions(TestLayout()));
+  const std::string file = ResultsIn(temp / "run");
+  std::size_t root = 0;
+  {
+    Connection database(file, Connection::Access::kReadOnly);
+    root =
+        static_cast<std::size_t>(database.Int("SELECT rootpage FROM sqlite_schema WHERE name = 'missions'"));
+  }
+  std::vector<unsigned char> bytes = BytesOf(file);
+  unsigned char* const page = bytes.data() + (root - 1) * kPageBytes;
+  ASSERT_GE(page[kCells] << 8 | page[kCells + 1], 2) << "an inner page with children";
+  const auto child = [&](std::size_t cell) {
+    return page + (page[kPointers + 2 * cell] << 8 | page[kPointers + 2 * cell + 1]);
+  };
+  std::copy(child(0), child(0) + 4, child(1));
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  const std::string damage = "the file is damaged: ";
+  EXPECT_TRUE(Contains(UserErrorOf([&] { DigestOfDir(temp / "run"); }), damage));
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader(temp / "run").FindDamage(); }), damage));
+  EXPECT_TRUE(Contains(UserErrorOf([&] {
+                         ResultReader reader(temp / "run");
+                         reader.ForEachMission(0, 0, Steps::kSkip, [](const StoredMission&) {});
+                         reader.ForEachMission(2, 0, Steps::kSkip, [](const StoredMission&) {});
+                       }),
+                       damage));
+}
+
+TEST(DamageTest, ATableThatHasLostItsKey) {
+  for (const std::string table : {"timings", "missions", "failures", "timesteps"}) {
+    SCOPED_TRACE(table);
+    const TempDir temp;
+    WriteStore(temp / "run", {{0, 0, 0}, {2, 1, 3}});
+    Sql(ResultsIn(temp / "run"),
+        "DROP VIEW named_missions; DROP VIEW named_timesteps; CREATE TABLE t AS SELECT * FROM " + table +
+            "; DROP TABLE " + table + "; ALTER TABLE t RENAME TO " + table + "; INSERT INTO " + table +
+            " SELECT * FROM " + table);
+    ExpectRefused(temp / "run", "its table " + table + " has lost its key");
+  }
 }
 
 TEST(DamageTest, ADirectoryThatCannotBeMade) {

@@ -2,6 +2,8 @@
 #include "engine/store/shards.h"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <random>
 
 #include "engine/store/finished.h"
@@ -115,6 +117,30 @@ TEST(FinishedTest, IsBelievedWhileTheFileIsUntouched) {
       .Execute("UPDATE timings SET wall_s = 1");
   fs::last_write_time(ResultsIn(temp / "run"), time);
   EXPECT_FALSE(RecallFinished(temp / "run", "this")) << "SQLite counts every change";
+}
+
+// A bit of the text that would be printed, below SQLite and with the file's times as they were.
+TEST(FinishedTest, WhatWasPrintedIsChecked) {
+  const TempDir temp;
+  WriteStore(temp / "run", {{0, 0, 1}});
+  const std::string file = ResultsIn(temp / "run"), table = "total 10.99 kJ in a table of its own\n";
+  RememberFinished(temp / "run", {"this", 100, table, "networks\n"});
+  ASSERT_TRUE(RecallFinished(temp / "run", "this"));
+  const auto time = fs::last_write_time(file);
+  std::string bytes;
+  {
+    std::ifstream in(file, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  const std::size_t at = bytes.rfind(table);
+  ASSERT_NE(at, std::string::npos);
+  {
+    std::fstream out(file, std::ios::binary | std::ios::in | std::ios::out);
+    out.seekp(static_cast<std::streamoff>(at + 6));
+    out.put('2');
+  }
+  fs::last_write_time(file, time);
+  EXPECT_FALSE(RecallFinished(temp / "run", "this"));
 }
 
 TEST(FinishedTest, NotWhileAnotherProcessWrites) {
