@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Where missions on rendered pixels agree with missions on the profile, and where not: from metrics.csv of `ed3r report`.
 
-  plot_tiers.py --rbs METRICS --arms PROFILE_METRICS PIXELS_METRICS... [--fitted METRICS] --out DIR
+  plot_tiers.py --rbs METRICS --arms PROFILE_METRICS PIXELS_METRICS... [--both NAME=METRICS] [--fitted METRICS] --out DIR
 
 --rbs: of sweeps/pixels_rbs.yaml: the random walk on both tiers in each world. --arms: the same arms in the same worlds, on the
-profile and on pixels; more than once. --fitted: of the default world on the profile that was fitted to pixels. An arm of a run
-without worlds is in the default one. Writes into DIR tiers.txt and tiers.png.
+profile and on pixels; more than once. --both: of a run of one world on both tiers, its variants (sweeps/pixels_m01.yaml).
+--fitted: of the default world on the profile that was fitted to pixels. An arm of a run without worlds is in the default one.
+Writes into DIR tiers.txt and tiers.png.
 """
 import argparse
 import csv
@@ -62,15 +63,19 @@ def text_of(rbs: dict, pairs: list) -> str:
     return "\n".join(lines) + "\n"
 
 
-def default_world(pairs: list, fitted: dict) -> str:
-    """All arms of the default world on every tier."""
-    tiers = {name: tier["paper"] for found in pairs for name, tier in zip(("profile", "pixels"), found) if "paper" in tier}
-    tiers |= {"fitted": fitted["paper"]} if fitted else {}
-    lines = ["", "The default world: profile, pixels" + (", and the profile that was fitted to pixels" if fitted else ""),
-             f"{'arm':<12}" + "".join(f" {'kJ, ' + name:<22} {'MSR, ' + name + ', %':<24}" for name in tiers)]
-    for arm in tiers.get("pixels", {}):
+def all_arms(world: str, pairs: list, fitted: dict) -> str:
+    """All arms of one world on every tier; "" where they were not flown there."""
+    tiers = {name: tier[world] for found in pairs for name, tier in zip(("profile", "pixels"), found) if world in found[1]}
+    if not tiers:
+        return ""
+    tiers |= {"fitted": fitted[world]} if world in fitted else {}
+    lines = ["", f"{'The default world' if world == 'paper' else world}, all arms" +
+             (" (fitted: the profile that was fitted to pixels)" if "fitted" in tiers else ""),
+             f"{'arm':<12}" + "".join(f" {'kJ, ' + name:<20} {'MSR, %':<20} {'FP, %':<18}" for name in tiers)]
+    for arm in tiers["pixels"]:
         lines.append(f"{arm:<12}" + "".join(
-            f" {'{:.1f} ({:.1f}-{:.1f})'.format(*tier[arm]['total_energy_kj']):<22} {'{:.1f} ({:.1f}-{:.1f})'.format(*tier[arm]['msr_pct']):<24}"
+            " " + " ".join(f"{'{:.1f} ({:.1f}-{:.1f})'.format(*tier[arm][key]):<{width}}"
+                           for key, width in (("total_energy_kj", 20), ("msr_pct", 20), ("fp_pct", 18)))
             for tier in tiers.values()))
     return "\n".join(line.rstrip() for line in lines) + "\n"
 
@@ -127,12 +132,17 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rbs", required=True, metavar="METRICS")
     parser.add_argument("--arms", nargs=2, action="append", default=[], metavar=("PROFILE_METRICS", "PIXELS_METRICS"))
+    parser.add_argument("--both", action="append", default=[], metavar="NAME=METRICS")
     parser.add_argument("--fitted", metavar="METRICS")
     parser.add_argument("--out", type=pathlib.Path, required=True)
     options = parser.parse_args(arguments)
     rbs, pairs = read(options.rbs), [(read(profile), read(pixels)) for profile, pixels in options.arms]
+    for name, _, path in (text.partition("=") for text in options.both):
+        tiers = read(path)
+        pairs.append(({name: tiers["tier=profile"]}, {name: tiers["tier=pixels"]}))
     options.out.mkdir(parents=True, exist_ok=True)
-    text = text_of(rbs, pairs) + default_world(pairs, read(options.fitted) if options.fitted else {})
+    whole = [name.partition("=")[0] for name in options.both] + ["paper"]
+    text = text_of(rbs, pairs) + "".join(all_arms(name, pairs, read(options.fitted) if options.fitted else {}) for name in whole)
     (options.out / "tiers.txt").write_text(text, encoding="utf-8")
     print(text, end="")
     draw(options.out / "tiers.png", rbs, pairs)
