@@ -122,7 +122,8 @@ def draw(path: pathlib.Path, rbs: dict, pairs: list) -> None:
         energy.plot([], [], "s", color=plot_style.ARM_COLOURS[arm], label=arm)
     for world, marker in zip(worlds, MARKERS):
         energy.plot([], [], marker, mfc="white", mec=plot_style.INK, ls="none", label="default" if world == "paper" else world)
-    energy.legend(fontsize=7, ncols=2)
+    energy.set_ylim(top=1.35 * energy.get_ylim()[1])
+    energy.legend(fontsize=7, ncols=3, loc="upper left")
     energy.set_title("The arms, on both tiers")
     figure.tight_layout()
     figure.savefig(path, dpi=130, metadata={"Software": None})
