@@ -21,6 +21,7 @@
 #include "studies/report/provenance.h"
 #include "studies/report/web_page.h"
 #include "studies/tables/layout.h"
+#include "studies/variants/pairing_notes.h"
 #include "studies/variants/variants.h"
 
 namespace ed3r::app {
@@ -160,6 +161,11 @@ int Compare(const Options& options) {
     throw UserError(
         fmt::format("{}: no arm of the other runs has the name of one of its arms", options.dirs.front()));
   const std::vector<std::string> departure_lines = notes;
+  for (std::size_t r = runs.size(); r-- > 1;) {
+    const std::vector<std::string> left_out = variants::PairingNotes(
+        {runs[0].label, runs[0].results.arms}, {runs[r].label, runs[r].results.arms}, study.same_draws);
+    notes.insert(notes.begin(), left_out.begin(), left_out.end());
+  }
   notes.insert(notes.begin(), other_contents.begin(), other_contents.end());
   const std::string text = Wrapped(notes) + variants::VariantText(study);
   if (!options.out.empty()) {

@@ -80,6 +80,10 @@ void PrintText(const sweep::SweepPlan& plan, int threads, std::int64_t shards) {
     fmt::print(
         ": {} x {}, about {:.1f} min on {}\n", Counted(static_cast<std::int64_t>(stage.arms.size()), "arm"),
         Counted(stage.missions, "mission"), ExpectedWallS(stage, threads) / 60.0, Counted(threads, "thread"));
+    if (stage.precision)
+      fmt::print("  at most: an arm ends when {} is known to {}, looked at every {}\n",
+                 stage.precision->metric, stage.precision->half_width,
+                 Counted(stage.precision->every, "mission"));
     if (shards > 0) fmt::print("{}", ShardsText(stage, shards));
     if (stage.timesteps != sweep::KeptTimesteps::kAll)
       fmt::print("  stores timesteps of {} missions\n",

@@ -20,6 +20,7 @@
 #include "engine/store/merge.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
+#include "engine/sweep/plan_text.h"
 #include "studies/report/load.h"
 #include "studies/report/report.h"
 #include "studies/report/report_folder.h"
@@ -72,6 +73,13 @@ void PrintStatus(store::ResultReader& reader, const Check& check) {
     fmt::print("{:<12} {:<28} {:>8} {:>8} {:>8} {:>8}\n", arm.stage, arm.arm, arm.planned, arm.done,
                arm.failed, arm.missing);
   fmt::print("{}", FailuresText(reader.Layout(), reader.Failures()));
+  for (const sweep::WrittenPlan::Stage& stage : sweep::ReadPlanText(reader.StoredRecipe().plan_text).stages)
+    if (stage.precision)
+      fmt::print(
+          "stage {} ends when it is known well enough, so that missing missions may not be needed: 'ed3r "
+          "status {} --stage "
+          "{}' tells\n",
+          stage.name, reader.dir(), stage.name);
   if (!check.done)
     fmt::print("not compared with its checksums, as it is larger than {} MB: 'ed3r verify {}' does\n",
                kCheckedBytes / 1'000'000, reader.dir());

@@ -1,6 +1,7 @@
 #include "engine/schedule/warmup.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <string>
 #include <string_view>
@@ -76,20 +77,37 @@ std::string WhatIsMissing(const sweep::Arm& learner) {
 
 }  // namespace
 
-WarmupChoice ChooseWarmup(const sweep::SweepPlan& plan, const sweep::Stage& stage,
-                          const sweep::Arm& learner) {
+namespace {
+
+// Every warm-up that the learner could learn from, in the plan's order.
+std::vector<WarmupChoice> Warmups(const sweep::SweepPlan& plan, const sweep::Stage& stage,
+                                  const sweep::Arm& learner) {
+  std::vector<WarmupChoice> found;
   const std::set<std::string> foundations = Foundations(plan, stage);
   for (std::size_t s = 0; s < plan.stages.size(); ++s) {
     const sweep::Stage& flown = plan.stages[s];
     if (flown.kind != sweep::StageKind::kFly || !foundations.contains(flown.name)) continue;
-    std::set<std::string> trainings = TrainingsBehind(plan, foundations, flown.name);
+    const std::set<std::string> trainings = TrainingsBehind(plan, foundations, flown.name);
     if (trainings.empty()) continue;
     for (std::size_t a = 0; a < flown.arms.size(); ++a)
       if (flown.arms[a].config.mission.strategy == SourceOf(learner) &&
           flown.arms[a].variant == learner.variant)
-        return {static_cast<int>(s), static_cast<int>(a), std::move(trainings)};
+        found.push_back({static_cast<int>(s), static_cast<int>(a), trainings});
   }
-  return {};
+  return found;
+}
+
+std::string NameOf(const sweep::SweepPlan& plan, const WarmupChoice& warmup) {
+  const sweep::Stage& stage = plan.stages[static_cast<std::size_t>(warmup.stage)];
+  return fmt::format("arm {} of stage {}", stage.arms[static_cast<std::size_t>(warmup.arm)].name, stage.name);
+}
+
+}  // namespace
+
+WarmupChoice ChooseWarmup(const sweep::SweepPlan& plan, const sweep::Stage& stage,
+                          const sweep::Arm& learner) {
+  std::vector<WarmupChoice> warmups = Warmups(plan, stage, learner);
+  return warmups.empty() ? WarmupChoice{} : std::move(warmups.front());
 }
 
 WarmupPart PartOf(const sweep::SweepPlan& plan, const WarmupChoice& warmup, const TrainingConfig& training,
@@ -104,6 +122,12 @@ void CheckWarmup(const sweep::SweepPlan& plan, const sweep::Stage& stage, const 
   const WarmupChoice choice = ChooseWarmup(plan, stage, learner);
   const std::string who = fmt::format("{}: stage {}: arm {}", plan.file, stage.name, learner.name);
   if (!choice) throw UserError(fmt::format("{} {}", who, WhatIsMissing(learner)));
+  if (const std::vector<WarmupChoice> all = Warmups(plan, stage, learner); all.size() > 1)
+    throw UserError(
+        fmt::format("{} could learn from {} and from {}; allowed: one warm-up of strategy {} before it; axes "
+                    "at the top of the file make variants, "
+                    "each with its own",
+                    who, NameOf(plan, all[0]), NameOf(plan, all[1]), SourceOf(learner)));
   const sweep::Stage& warmup = plan.stages[static_cast<std::size_t>(choice.stage)];
   const TrainingConfig& training = learner.config.training;
   if (!training.own_warmups) return;

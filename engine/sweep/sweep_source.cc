@@ -76,6 +76,21 @@ void AppendAfter(const YamlNode& node, const std::vector<std::string>& earlier,
   after.push_back(name);
 }
 
+// Networks learn with the parameters of the arms that ask them: what a training stage said of its own would be lost.
+void CheckTrainingSaysNothing(const StageSource& stage) {
+  if (stage.kind != StageKind::kTrain) return;
+  const auto refuse = [&](const std::string& at, const char* what) {
+    FailAt(at, fmt::format("{}: is not allowed in stage '{}' of kind train: networks learn with the "
+                           "parameters of the arms that "
+                           "ask them; write it in the stage that comes after, or at the top",
+                           what, stage.name));
+  };
+  if (!stage.section.set.empty()) refuse(stage.section.set.front().at, "set");
+  if (stage.section.axes && !stage.section.axes->empty()) refuse(stage.section.axes->front().at, "sweep");
+  if (stage.section.where && !stage.section.where->empty())
+    refuse(stage.section.where->front().At(), "where");
+}
+
 StageSource ReadStage(const YamlNode& node, const std::vector<std::string>& earlier,
                       const SettingReader& reader, const ValueCheck& check) {
   ExpectKeys(node, "a stage",
@@ -102,7 +117,42 @@ StageSource ReadStage(const YamlNode& node, const std::vector<std::string>& earl
     FailAt(stage.at, "precision: is not allowed in a stage of kind train, which flies none");
   if (stage.kind == StageKind::kTrain && stage.section.timesteps)
     FailAt(stage.section.timesteps->at, "store: is not allowed in a stage of kind train, which flies none");
+  CheckTrainingSaysNothing(stage);
   return stage;
+}
+
+// What a file on top says for all stages and every stage of its base says otherwise would be lost.
+void CheckReachesAStage(const SweepSource& source, const std::vector<StageSource>& stages) {
+  const auto lost = [&](const auto& says) {
+    bool any = false;
+    for (const StageSource& stage : stages) {
+      if (stage.kind == StageKind::kTrain) continue;
+      any = true;
+      if (!says(stage)) return false;
+    }
+    return any;
+  };
+  const auto refuse = [&](const std::string& at, const std::string& what, const std::string& instead) {
+    FailAt(at, fmt::format("{}: has no effect: every stage of the base file says its own, at {} first; write "
+                           "the stages anew, or "
+                           "give {}",
+                           what, stages.front().at, instead));
+  };
+  for (const Setting& setting : source.top.set)
+    if (!setting.is_default && lost([&](const StageSource& stage) {
+          return std::any_of(stage.section.set.begin(), stage.section.set.end(),
+                             [&](const Setting& own) { return own.key == setting.key; });
+        }))
+      refuse(setting.at, setting.key, fmt::format("--set {}={}", setting.key, setting.canonical));
+  if (source.top.missions &&
+      lost([](const StageSource& stage) { return stage.section.missions.has_value(); }))
+    refuse(source.top.missions->at, "missions", "--missions");
+  if (source.top.precision &&
+      lost([](const StageSource& stage) { return stage.section.precision.has_value(); }))
+    refuse(stages.front().at, "precision", "them a precision");
+  if (source.top.timesteps &&
+      lost([](const StageSource& stage) { return stage.section.timesteps.has_value(); }))
+    refuse(source.top.timesteps->at, "store", "them a store");
 }
 
 std::vector<StageSource> ReadStages(const YamlNode& node, const SettingReader& reader,
@@ -121,6 +171,7 @@ std::vector<StageSource> ReadStages(const YamlNode& node, const SettingReader& r
 
 void MergeUnder(SweepSource& source, SweepSource base) {
   SweepSection& top = source.top;
+  if (!source.stages && base.stages) CheckReachesAStage(source, *base.stages);
   // A base file's setting is a default, so an axis may vary it; within one file that is a contradiction.
   if (top.axes) base.top.set = DefaultsOf(std::move(base.top.set), *top.axes);
   top.set = MergedSettings(base.top.set, top.set);

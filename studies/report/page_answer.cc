@@ -109,15 +109,15 @@ int Tested(const std::vector<variants::ArmDifference>& differences) {
 
 // Of these comparisons, whichever way round they have the two arms.
 std::optional<Difference> Compared(const std::vector<variants::ArmDifference>& differences,
-                                   const std::string& subject, const std::string& rival,
+                                   const metrics::ArmMetrics& subject, const metrics::ArmMetrics& rival,
                                    std::string_view metric) {
   const int family = Tested(differences);
   for (const variants::ArmDifference& d : differences) {
-    if (d.metric != metric) continue;
+    if (d.metric != metric || d.stage != subject.stage) continue;
     const char* unit = metric == "total_energy_kj" ? "kJ" : "points";
-    if (d.arm == subject && d.minus == rival)
+    if (d.arm == subject.name && d.minus == rival.name)
       return Difference{d.difference, d.lo, d.hi, d.p_holm, unit, d.OneNetwork(), family};
-    if (d.arm == rival && d.minus == subject)
+    if (d.arm == rival.name && d.minus == subject.name)
       return Difference{-d.difference, -d.hi, -d.lo, d.p_holm, unit, d.OneNetwork(), family};
   }
   return std::nullopt;
@@ -137,7 +137,7 @@ std::string Against(const Report& report, const std::vector<variants::ArmDiffere
   for (const auto& [metric, of] : kMetrics)
     if (const std::optional<Difference> d = of_claims
                                                 ? Claimed(report.claims, subject.name, rival.name, metric)
-                                                : Compared(differences, subject.name, rival.name, metric))
+                                                : Compared(differences, subject, rival, metric))
       parts.push_back(Tells(*d, of));
   if (parts.empty())
     return theirs + "; the two flew no scenarios in common, so nothing is said of their difference.";
@@ -182,7 +182,7 @@ std::string Best(const metrics::ArmMetrics& subject, const Arms& arms,
   std::vector<std::string> parts;
   const auto add = [&](const metrics::ArmMetrics& best, const char* metric, const char* of) {
     if (&best == &subject) return;
-    if (const std::optional<Difference> d = Compared(differences, best.name, subject.name, metric))
+    if (const std::optional<Difference> d = Compared(differences, best, subject, metric))
       parts.push_back(Tells(*d, of));
   };
   add(*frugal, "total_energy_kj", "energy");
@@ -218,7 +218,7 @@ const metrics::ArmMetrics* Rival(const Report& report, const Arms& arms, const m
   const auto other = [&](const metrics::ArmMetrics* arm) { return arm != nullptr && arm != &subject; };
   if (const metrics::ArmMetrics* walk = Named(arms, "rbs"); other(walk)) return walk;
   for (const variants::ArmDifference& d : report.differences)
-    if (d.arm == subject.name)
+    if (d.stage == subject.stage && d.arm == subject.name)
       if (const metrics::ArmMetrics* reference = Named(arms, d.minus); other(reference)) return reference;
   for (const metrics::ArmMetrics* weakest : {Extreme(arms, Success, -1), Extreme(arms, Energy, 1)})
     if (other(weakest)) return weakest;
@@ -246,7 +246,7 @@ std::vector<std::string> AnswerSentences(const Report& report, const std::vector
   Arms arms;
   std::vector<metrics::ArmData> flown;
   for (std::size_t a = 0; a < report.told.size(); ++a)
-    if (!warmups[a] && report.told[a].missions > 0)
+    if (!warmups[a] && report.told[a].missions > 0 && report.told[a].stage == subject->stage)
       arms.push_back(&report.told[a]), flown.push_back(missions[a]);
   std::vector<std::string> sentences;
   if (const std::string note = VariantNote(report); !note.empty()) sentences.push_back(note);

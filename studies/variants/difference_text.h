@@ -20,6 +20,7 @@ inline std::string DifferenceHeading(const char* metric) {
 // "-3.2* [-4.0, -2.4]": a star where it is certain, a question mark where one network flew on a side.
 inline std::string DifferenceCell(const PairedDifference& d, bool certain) {
   if (std::isnan(d.difference)) return "–";
+  if (std::isnan(d.lo)) return fmt::format("{:+.1f}", d.difference);
   return fmt::format("{:+.1f}{} [{:+.1f}, {:+.1f}]", d.difference,
                      certain          ? "*"
                      : d.OneNetwork() ? "?"

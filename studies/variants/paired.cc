@@ -76,6 +76,13 @@ Finding FindingOf(const std::vector<double>& differences) {
   return {statistics::MeanInterval(differences), statistics::MeanP(differences)};
 }
 
+// Of networks, each by the mean of its differences. Where they coincide their luck adds nothing to that of the missions.
+Finding FindingOfNetworks(const std::vector<double>& means) {
+  if (std::all_of(means.begin(), means.end(), [&](double x) { return x == means.front(); }))
+    return {{means.front(), means.front()}, means.front() == 0.0 ? 1.0 : 0.0};
+  return FindingOf(means);
+}
+
 // Variance of the mean of a sample of at least two.
 double VarianceOfMean(const std::vector<double>& sample) {
   const double mean = Mean(sample), n = static_cast<double>(sample.size());
@@ -98,11 +105,11 @@ Finding WelchFinding(const std::vector<double>& a, const std::vector<double>& b,
 Finding NetworkFinding(const Pairs& pairs, double difference) {
   const std::vector<double> base = MeansOf(pairs.base_by_network), other = MeansOf(pairs.other_by_network);
   if (base.size() == 1 || other.size() == 1 || (base.empty() && other.empty())) return {};
-  if (other.empty()) return FindingOf(MeansOf(pairs.difference_by_base));
-  if (base.empty()) return FindingOf(MeansOf(pairs.difference_by_other));
+  if (other.empty()) return FindingOfNetworks(MeansOf(pairs.difference_by_base));
+  if (base.empty()) return FindingOfNetworks(MeansOf(pairs.difference_by_other));
   // Each network met one of the other side alone: what they share goes out of the differences.
   if (pairs.networks.size() == base.size() && base.size() == other.size())
-    return FindingOf(MeansOf(pairs.difference_by_base));
+    return FindingOfNetworks(MeansOf(pairs.difference_by_base));
   return WelchFinding(base, other, difference);
 }
 

@@ -210,9 +210,11 @@ std::string VariantText(const VariantStudy& study) {
 
 std::string DifferenceCsv(const VariantStudy& study) {
   std::string csv = "arm,variant,metric,base,difference,lo,hi,pairs,base_networks,networks\n";
+  const auto number = [](double x) { return std::isnan(x) ? "" : fmt::format("{}", x); };
   for (const VariantDifference& d : study.differences)
     csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", CsvField(d.arm), CsvField(d.variant), d.metric,
-                       d.base, d.difference, d.lo, d.hi, d.pairs, d.base_networks, d.networks);
+                       number(d.base), number(d.difference), number(d.lo), number(d.hi), d.pairs,
+                       d.base_networks, d.networks);
   return csv;
 }
 

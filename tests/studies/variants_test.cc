@@ -7,6 +7,7 @@
 
 #include "studies/statistics/intervals.h"
 #include "studies/variants/paired.h"
+#include "studies/variants/pairing_notes.h"
 #include "tests/claims/synthetic_run.h"
 
 namespace ed3r {
@@ -184,6 +185,41 @@ TEST(VariantsTest, TheLuckOfOneSideIsInTheInterval) {
     EXPECT_NEAR(energy.p, statistics::StudentP(7.0 / std::sqrt(80.0 / 3.0 / 4.0), 3), 1e-9);
     EXPECT_FALSE(energy.Certain());
   }
+}
+
+// Their luck adds nothing to that of the missions, to the interval as to p.
+TEST(VariantsTest, NetworksWhoseMeansCoincideLeaveTheDecisionToTheMissions) {
+  metrics::ArmData base{"online", "ed3r-75@a", {}}, other{"online", "ed3r-75@b", {}};
+  std::vector<double> differences;
+  for (int i = 0; i < 40; ++i) {
+    const double more = 2.0 + (i / 2 % 2 == 0 ? 1.0 : -1.0);
+    base.missions.push_back(MissionOf(i, 20, mission::Outcome::kSuccess, i % 2));
+    other.missions.push_back(MissionOf(i, 20 + more, mission::Outcome::kSuccess, i % 2));
+    differences.push_back(more);
+  }
+  const variants::PairedDifference energy = variants::DifferenceOf(base, other, "total_energy_kj");
+  EXPECT_NEAR(energy.difference, 2.0, 1e-9);
+  EXPECT_NEAR(energy.p, statistics::MeanP(differences), 1e-12);
+  EXPECT_GT(energy.lo, 0.0);
+  EXPECT_LT(energy.p, 1e-6);
+}
+
+TEST(VariantsTest, WhatAComparisonLeavesOutIsTold) {
+  const std::vector<metrics::ArmData> first = {
+      {"online",
+       "rbs",
+       {MissionOf(0, 1, mission::Outcome::kSuccess), MissionOf(1, 1, mission::Outcome::kSuccess)}},
+      {"online", "mine", {MissionOf(0, 1, mission::Outcome::kSuccess)}}};
+  std::vector<metrics::ArmData> other = {{"online", "rbs", {MissionOf(1, 2, mission::Outcome::kSuccess)}}};
+  using Notes = std::vector<std::string>;
+  EXPECT_EQ(variants::PairingNotes({"a", first}, {"b", other}, true),
+            (Notes{"only a has mine (stage online): not compared",
+                   "a and b, rbs: 1 scenario is in common, of 2 and 1"}));
+  other[0].missions[0].site = 5;
+  EXPECT_EQ(variants::PairingNotes({"a", first}, {"b", other}, true).size(), 3u);
+  EXPECT_EQ(variants::PairingNotes({"a", first}, {"b", other}, false).size(), 1u)
+      << "other seeds: other draws";
+  EXPECT_EQ(variants::PairingNotes({"a", first}, {"b", first}, true), Notes{});
 }
 
 // As many networks, that took turns otherwise: what they share cannot be taken out.

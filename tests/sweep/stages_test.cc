@@ -13,7 +13,7 @@ constexpr const char* kStudy =
     "set: {robot.mass_kg: 2, agents.eta_min: 0.7}\n"
     "stages:\n"
     "  - {name: warmup, missions: 2040, set: {strategy: random, robot.mass_kg: 1.5}}\n"
-    "  - {name: training, kind: train, after: warmup, sweep: {agents.eta_min: [0.65, 0.75]}}\n"
+    "  - {name: training, kind: train, after: warmup}\n"
     "  - name: online\n"
     "    after: [warmup, training]\n"
     "    sweep: {strategy: [rbs, ed3r], agents.eta_min: [0.65, 0.75]}\n"
@@ -30,8 +30,8 @@ TEST(StagesTest, EachAddsToTheTopLevel) {
   EXPECT_EQ(training.kind, StageKind::kTrain);
   EXPECT_EQ(training.missions, 0);
   EXPECT_EQ(training.after, Names{"warmup"});
-  EXPECT_EQ(ArmNames(training), (Names{"training,eta_min=0.65", "training,eta_min=0.75"}));
-  EXPECT_EQ(training.arms[1].config.robot.mass_kg, 2.0);
+  EXPECT_EQ(ArmNames(training), Names{"training"});
+  EXPECT_EQ(training.arms[0].config.robot.mass_kg, 2.0);
   EXPECT_EQ(online.after, (Names{"warmup", "training"}));
   EXPECT_EQ(online.missions, 850);
   EXPECT_EQ(ArmNames(online), (Names{"rbs,eta_min=0.75", "ed3r-65", "ed3r-75"}));
@@ -81,6 +81,38 @@ TEST(StagesTest, AnAirframesKeysCanBeSwept) {
                                        "name: x\nmissions: 1\nset: {robot.mass_kg: 3}\n"
                                        "sweep: {robot.mass_kg: [4, 5]}\n")),
                UserError);
+}
+
+// It would be lost: networks learn with what the arms say that ask them.
+TEST(StagesTest, ATrainingStageSaysNothingOfItsOwn) {
+  for (const auto& [says, what] :
+       {std::pair("set: {training.epochs: 3}", "set: is not allowed in stage 't'"),
+        std::pair("sweep: {training.learning_rate: [1e-3, 1e-4]}", "sweep: is not allowed"),
+        std::pair("where: training.epochs < 5", "where: is not allowed")}) {
+    SCOPED_TRACE(says);
+    const std::string refusal = Refusal(
+        std::string("name: x\nmissions: 3\nstages:\n  - {name: a}\n  - {name: t, kind: train, after: a, ") +
+        says + "}\n  - {name: b, after: t}\n");
+    EXPECT_NE(refusal.find(what), std::string::npos) << refusal;
+  }
+}
+
+TEST(StagesTest, WhatEveryStageOfTheBaseSaysOtherwiseIsRefusedAboveIt) {
+  const ScratchFolder scratch;
+  scratch.Write("base.yaml",
+                "name: base\nstages:\n  - {name: s, missions: 3, set: {robot.mass_kg: 2.2}}\n"
+                "  - {name: r, missions: 4, set: {robot.mass_kg: 2.5, strategy: rbs}}\n");
+  const auto refusal = [&](const std::string& text) -> std::string {
+    try {
+      LoadSweep(scratch.Write("x.yaml", "name: x\nbase: base.yaml\n" + text), {});
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal("set: {robot.mass_kg: 3}\n").find("robot.mass_kg: has no effect"), std::string::npos);
+  EXPECT_NE(refusal("missions: 8\n").find("missions: has no effect"), std::string::npos);
+  EXPECT_EQ(refusal("set: {strategy: random}\n"), "") << "one stage takes it";
 }
 
 // What stands above a list holds in the points that do not name its key, too.

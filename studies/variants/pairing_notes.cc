@@ -1,0 +1,72 @@
+#include "studies/variants/pairing_notes.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "studies/variants/paired.h"
+
+namespace ed3r::variants {
+namespace {
+
+const metrics::ArmData* Find(std::span<const metrics::ArmData> arms, const metrics::ArmData& like) {
+  const auto found = std::find_if(arms.begin(), arms.end(), [&](const metrics::ArmData& arm) {
+    return arm.stage == like.stage && arm.name == like.name;
+  });
+  return found == arms.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> OnlyIn(std::span<const metrics::ArmData> arms,
+                                std::span<const metrics::ArmData> others) {
+  std::vector<std::string> names;
+  for (const metrics::ArmData& arm : arms)
+    if (!arm.missions.empty() && Find(others, arm) == nullptr)
+      names.push_back(fmt::format("{} (stage {})", arm.name, arm.stage));
+  return names;
+}
+
+std::size_t InCommon(const metrics::ArmData& a, const metrics::ArmData& b) {
+  std::set<std::int64_t> scenarios;
+  for (const mission::MissionRecord& mission : a.missions) scenarios.insert(mission.scenario);
+  return static_cast<std::size_t>(std::count_if(
+      b.missions.begin(), b.missions.end(),
+      [&](const mission::MissionRecord& mission) { return scenarios.contains(mission.scenario); }));
+}
+
+}  // namespace
+
+std::vector<std::string> PairingNotes(const LabelledRun& first, const LabelledRun& other, bool same_draws) {
+  std::vector<std::string> notes;
+  for (const auto& [has, lacks] : {std::pair(&first, &other), std::pair(&other, &first)})
+    if (const std::vector<std::string> names = OnlyIn(has->arms, lacks->arms); !names.empty())
+      notes.push_back(fmt::format("only {} has {}: not compared", has->label, fmt::join(names, ", ")));
+  if (!same_draws) return notes;
+  std::map<std::string, std::vector<std::string>> partly;  // by how many are in common
+  std::vector<std::string> elsewhere;
+  for (const metrics::ArmData& arm : first.arms) {
+    const metrics::ArmData* const beside = Find(other.arms, arm);
+    if (beside == nullptr || arm.missions.empty() || beside->missions.empty()) continue;
+    const std::size_t common = InCommon(arm, *beside);
+    if (common < std::max(arm.missions.size(), beside->missions.size()))
+      partly[common == 0 ? std::string("no scenario is in common: nothing is compared")
+                         : fmt::format("{} {} in common, of {} and {}", common,
+                                       common == 1 ? "scenario is" : "scenarios are", arm.missions.size(),
+                                       beside->missions.size())]
+          .push_back(arm.name);
+    if (common > 0 && !SameScenarios(arm, *beside)) elsewhere.push_back(arm.name);
+  }
+  for (const auto& [what, names] : partly)
+    notes.push_back(fmt::format("{} and {}, {}: {}", first.label, other.label, fmt::join(names, ", "), what));
+  if (!elsewhere.empty())
+    notes.push_back(
+        fmt::format("{} and {}, {}: scenarios of one number begin elsewhere or look for another fire, so "
+                    "that pairs have nothing "
+                    "in common",
+                    first.label, other.label, fmt::join(elsewhere, ", ")));
+  return notes;
+}
+
+}  // namespace ed3r::variants

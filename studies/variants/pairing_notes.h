@@ -1,0 +1,21 @@
+// What a comparison of two runs leaves out, in sentences.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "studies/metrics/metrics.h"
+
+namespace ed3r::variants {
+
+struct LabelledRun {
+  std::string label;
+  std::span<const metrics::ArmData> arms;
+};
+
+// Arms that only one of the runs has; and, where both draw the same scenarios (one seed), arms of which not all scenarios are
+// in common, none are, or whose scenarios are others under the same numbers. Empty where nothing is left out.
+std::vector<std::string> PairingNotes(const LabelledRun& first, const LabelledRun& other, bool same_draws);
+
+}  // namespace ed3r::variants
