@@ -131,6 +131,21 @@ struct ReportOptions {
   bool json = false, no_figures = false, no_missions = false, force = false, claims = false;
 };
 
+// Tables of the paper's arms and its verdicts find an arm by its name: of two stages they would tell one without saying which.
+std::string NamesOfSeveralStages(const report::RunResults& results) {
+  std::map<std::string, std::vector<std::string>> stages;
+  for (const metrics::ArmData& arm : results.arms)
+    if (!arm.missions.empty()) stages[arm.name].push_back(arm.stage);
+  std::erase_if(stages, [](const auto& entry) { return entry.second.size() < 2; });
+  if (stages.empty()) return "";
+  const auto& [name, flown] = *stages.begin();
+  return fmt::format(
+      "{} by name of more than one stage ({} of stages {}): tables of the paper's arms are of the last of "
+      "them, verdicts of the "
+      "first, metrics.csv tells each; other names in each stage tell them apart",
+      Counted(std::ssize(stages), "arm"), name, fmt::join(flown, ", "));
+}
+
 int MakeReportOf(const ReportOptions& options) {
   const GatheredShards run(options.dir);
   store::ResultReader reader(run.dir());
@@ -164,7 +179,8 @@ int MakeReportOf(const ReportOptions& options) {
     fmt::print("{}\n{}: index.html, report.txt, report.json, metrics.csv, {} tables, {} figures\n",
                report::ReportText(report), folder.out, report.tables.size(), written.figures);
   FlushOutput();
-  for (const std::string& note : {written.note, written.page_note, watched.note})
+  for (const std::string& note :
+       {NamesOfSeveralStages(results), written.note, written.page_note, watched.note})
     if (!note.empty()) Tell("note: {}", note);
   if (written.plot_error.empty()) return kDone;
   Tell("figures: drawing failed: {}", written.plot_error);
