@@ -114,9 +114,8 @@ class DataSet {
     MakeFolder(out);
     FrameFile frames(out / "frames.npy", options_.views * options_.frames, size_);
     std::string labels =
-        "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label,tilt_deg,haze_range_m,sun_"
-        "deg,"
-        "cloud_cover,distractors\n";
+        "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label,tilt_deg,"
+        "haze_range_m,sun_deg,cloud_cover,distractors\n";
     int looks = 0;
     for (int kept = 0; kept < options_.views; ++looks) {
       if (looks == kMaxViews)

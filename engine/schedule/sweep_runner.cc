@@ -164,6 +164,7 @@ class SweepRun {
   // Nothing is built on damaged missions, and a run that ends well leaves none behind.
   void LookForDamage() {
     summary_.repaired = store_->Repaired();
+    if (!store_->Grown().empty()) return;  // looked through before it grew
     const std::vector<store::DamagedMission> damage = store_->FindDamage();
     if (damage.empty()) return;
     if (!options_.repair) throw UserError(store::DamageText(options_.dir, damage.front()));

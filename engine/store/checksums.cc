@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "engine/core/check.h"
-#include "engine/core/sha256.h"
 
 namespace ed3r::store {
 namespace {
@@ -20,12 +19,6 @@ std::vector<std::string> ColumnsIn(Connection& database, const std::string& tabl
 std::vector<sweep::KeptTimesteps> KeptIn(Connection& database) {
   Statement plan(database, "SELECT value FROM recipe WHERE key = 'plan'");
   return plan.Step() ? sweep::ReadKeptTimesteps(plan.Text(0)) : std::vector<sweep::KeptTimesteps>();
-}
-
-std::string Sha256Of(std::string_view bytes) {
-  Sha256 sha;
-  sha.Update(bytes);
-  return sha.Hex();
 }
 
 }  // namespace
@@ -60,7 +53,7 @@ std::string RecordTables::StepsChecksum(const std::vector<mission::TimestepRecor
   AppendText(bytes, timesteps_.names());
   AppendInt(bytes, static_cast<std::int64_t>(steps.size()));
   for (const mission::TimestepRecord& step : steps) timesteps_.Append(bytes, step);
-  return Sha256Of(bytes);
+  return HashOf(bytes);
 }
 
 std::string RecordTables::MissionChecksum(const RunLayout& layout, const sweep::RunId& id,
@@ -74,7 +67,7 @@ std::string RecordTables::MissionChecksum(const RunLayout& layout, const sweep::
   AppendText(bytes, missions_.names());
   missions_.Append(bytes, record);
   AppendText(bytes, steps);
-  return Sha256Of(bytes);
+  return HashOf(bytes);
 }
 
 Checksums RecordTables::Of(const RunLayout& layout, const sweep::RunId& id,

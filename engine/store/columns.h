@@ -19,6 +19,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/core/sha256.h"
 #include "engine/store/sqlite.h"
 
 namespace ed3r::store {
@@ -113,6 +114,13 @@ inline void AppendInt(std::string& bytes, std::int64_t value) {
   char little[8];
   PutInt(little, value);
   bytes.append(little, sizeof little);
+}
+
+// SHA-256 in hexadecimal.
+inline std::string HashOf(std::string_view bytes) {
+  Sha256 sha;
+  sha.Update(bytes);
+  return sha.Hex();
 }
 
 inline void AppendText(std::string& bytes, std::string_view text) {

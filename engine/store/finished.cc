@@ -9,7 +9,6 @@
 #include <filesystem>
 
 #include "engine/core/check.h"
-#include "engine/core/sha256.h"
 #include "engine/store/columns.h"
 #include "engine/store/directory_lock.h"
 #include "engine/store/file_system.h"
@@ -61,9 +60,7 @@ std::string ChecksumOf(const FinishedRun& run) {
   std::string bytes;
   for (const std::string& text : {run.made_by, std::to_string(run.missions), run.table, run.networks})
     AppendText(bytes, text);
-  Sha256 sha;
-  sha.Update(bytes);
-  return sha.Hex();
+  return HashOf(bytes);
 }
 
 void Write(const std::string& file, const FinishedRun& run) {

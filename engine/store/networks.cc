@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "engine/core/check.h"
-#include "engine/core/sha256.h"
+#include "engine/store/columns.h"
 #include "engine/store/schema.h"
 
 namespace ed3r::store {
@@ -18,12 +18,6 @@ std::optional<std::pair<int, int>> ArmOf(const RunLayout& layout, std::int64_t r
       if (layout.RunIndex(static_cast<int>(s), static_cast<int>(a)) == run)
         return std::pair{static_cast<int>(s), static_cast<int>(a)};
   return std::nullopt;
-}
-
-std::string HashOf(const std::string& bytes) {
-  Sha256 sha;
-  sha.Update(bytes);
-  return sha.Hex();
 }
 
 }  // namespace

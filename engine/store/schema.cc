@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "engine/core/check.h"
-#include "engine/core/sha256.h"
 #include "engine/mission/record.h"
 #include "engine/store/checksums.h"
 #include "engine/store/columns.h"
@@ -94,9 +93,7 @@ std::string RecipeChecksum(Connection& database) {
     while (rows.Step())
       for (int column = 0; column < rows.Columns(); ++column) AppendText(bytes, rows.Text(column));
   }
-  Sha256 sha;
-  sha.Update(bytes);
-  return sha.Hex();
+  return HashOf(bytes);
 }
 
 void SealRecipe(Connection& database) {
@@ -104,26 +101,23 @@ void SealRecipe(Connection& database) {
   seal.Run(RecipeChecksum(database));
 }
 
-// Over which arm asks which network. The networks themselves have checksums of their own.
-std::string UsesChecksum(Connection& database) {
+std::string HashOfRows(Connection& database, const char* query) {
   std::string bytes;
-  Statement rows(database, "SELECT run, seed, agent, sha256 FROM flown_networks ORDER BY run, seed, agent");
+  Statement rows(database, query);
   while (rows.Step())
     for (int column = 0; column < rows.Columns(); ++column) AppendText(bytes, rows.Text(column));
-  Sha256 sha;
-  sha.Update(bytes);
-  return sha.Hex();
+  return HashOf(bytes);
+}
+
+// Over which arm asks which network. The networks themselves have checksums of their own.
+std::string UsesChecksum(Connection& database) {
+  return HashOfRows(database,
+                    "SELECT run, seed, agent, sha256 FROM flown_networks ORDER BY run, seed, agent");
 }
 
 // Over the networks by what they compute, their names and the checksums of their files.
 std::string NetworkFilesChecksum(Connection& database) {
-  std::string bytes;
-  Statement rows(database, "SELECT sha256, name, checksum FROM networks ORDER BY sha256");
-  while (rows.Step())
-    for (int column = 0; column < rows.Columns(); ++column) AppendText(bytes, rows.Text(column));
-  Sha256 sha;
-  sha.Update(bytes);
-  return sha.Hex();
+  return HashOfRows(database, "SELECT sha256, name, checksum FROM networks ORDER BY sha256");
 }
 
 // A view may compute without end and a trigger may change what is written: whoever gives a file away decides what they do.
@@ -337,9 +331,7 @@ std::vector<InputFile> ReadFiles(Connection& database) {
     InputFile& file = files.emplace_back(InputFile{select.Text(0), select.Text(1), std::nullopt});
     if (select.IsNull(2)) continue;
     file.content = select.Blob(2);
-    Sha256 sha;
-    sha.Update(*file.content);
-    if (sha.Hex() != file.sha256)
+    if (HashOf(*file.content) != file.sha256)
       FailDamagedRecipe(database, fmt::format("its copy of {} does not match its checksum", file.name));
   }
   return files;

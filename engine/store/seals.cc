@@ -7,19 +7,12 @@
 #include <sstream>
 
 #include "engine/core/check.h"
-#include "engine/core/sha256.h"
 #include "engine/store/columns.h"
 
 namespace ed3r::store {
 namespace {
 
 constexpr char kKey[] = "origins";  // in the table recipe
-
-std::string HashOf(std::string_view bytes) {
-  Sha256 sha;
-  sha.Update(bytes);
-  return sha.Hex();
-}
 
 std::string OriginOf(const Recipe& recipe) {
   std::string bytes;

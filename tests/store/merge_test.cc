@@ -68,6 +68,14 @@ TEST_F(MergeTest, IntoOneOfThem) {
   EXPECT_EQ(MergeStores(Shard(0), {Shard(0)}).added, 0);
 }
 
+TEST_F(MergeTest, ALinkToTheStoreIsTheStore) {
+  fs::create_directories(temp_ / "link");
+  fs::create_hard_link(ResultsIn(Shard(0)), ResultsIn(temp_ / "link"));
+  const std::string digest = DigestOfDir(Shard(0));
+  EXPECT_EQ(MergeStores(Shard(0), {temp_ / "link"}).added, 0);
+  EXPECT_EQ(DigestOfDir(Shard(0)), digest);
+}
+
 // Stores mission {2, 0, 7} with one column off by one unit in the last place.
 void WriteConflict(const std::string& dir, bool in_step) {
   const sweep::RunId id{2, 0, 7};

@@ -53,6 +53,28 @@ TEST(LoadRunTest, GivesFlyingArmsInPlanOrder) {
   }
 }
 
+// Missions that a run with a precision lacks between others are missing, however well the rest is known.
+TEST(LoadRunTest, AGapOfARunWithAPrecisionIsMissing) {
+  sweep::SweepPlan plan{.name = "p", .question = "", .file = "", .seed = 7, .stages = {sweep::Stage()}};
+  plan.stages[0].name = "online";
+  plan.stages[0].missions = 200;
+  plan.stages[0].precision = sweep::Precision{.metric = "total_energy_kj", .half_width = 1e9, .every = 2};
+  plan.stages[0].arms.emplace_back().name = "rbs";
+  store::Recipe recipe = store::TestRecipe();
+  recipe.plan_text = plan.CanonicalText();
+  const auto missing = [&](const std::vector<int>& numbers) {
+    const store::TempDir temp;
+    {
+      const auto store = store::ResultStore::Open(temp / "run", recipe, store::LayoutOf(plan));
+      for (const int number : numbers) store->Put({0, 0, number}, Mission(number), 0.5);
+      store->Commit();
+    }
+    return report::LoadRun(temp / "run").arms[0].missing;
+  };
+  EXPECT_EQ(missing({0, 1, 2, 3}), 0);
+  EXPECT_EQ(missing({0, 4}), 3);
+}
+
 TEST(LoadRunTest, ReportOfAStoreIsTheReportOfItsMissions) {
   const store::TempDir temp;
   WriteRun(temp / "run");

@@ -172,6 +172,19 @@ TEST(PageAnswerTest, TellsTheStudiedArmBesideItsRival) {
   EXPECT_NE(sentences[1].find("correction for all 3 comparisons of arms"), std::string::npos) << sentences[1];
 }
 
+// The rival is of the studied arm's stage, though another stage has one of its name before.
+TEST(PageAnswerTest, ComparesWithinAStage) {
+  metrics::ArmData other = TwelveMissions("rbs", 3, 2);
+  other.stage = "small";
+  const auto sentences =
+      Answer({other, TwelveMissions("rbs", 20, 8), TwelveMissions("ed3r-75", 10, 9)}, {false, false, false});
+  ASSERT_GE(sentences.size(), 2u);
+  for (const std::string& sentence : sentences)
+    EXPECT_EQ(sentence.find("lowest mean energy"), std::string::npos)
+        << "two arms of the stage: " << sentence;
+  EXPECT_TRUE(sentences[1].starts_with("RBS finds the fire in 66.7 % (")) << sentences[1];
+}
+
 // Alone the interval is clear of 0; six arms more, each compared in three metrics, raise the corrected p.
 TEST(PageAnswerTest, SaysWhyAnIntervalClearOfZeroIsNotSignificant) {
   std::vector<metrics::ArmData> arms = {TwelveMissions("mine", 10, 12), TwelveMissions("rbs", 20, 6)};
