@@ -140,9 +140,9 @@ std::string NamesOfSeveralStages(const report::RunResults& results) {
   if (stages.empty()) return "";
   const auto& [name, flown] = *stages.begin();
   return fmt::format(
-      "{} by name of more than one stage ({} of stages {}): tables of the paper's arms are of the last of "
-      "them, verdicts of the "
-      "first, metrics.csv tells each; other names in each stage tell them apart",
+      "{} by name of more than one stage ({} of stages {}): tables of the paper's arms and verdicts are of "
+      "the "
+      "last of them, metrics.csv tells each; other names in each stage tell them apart",
       Counted(std::ssize(stages), "arm"), name, fmt::join(flown, ", "));
 }
 

@@ -204,7 +204,7 @@ class SweepRun {
   }
 
   void Fly(int stage) {
-    FetchNetworks(plan_.stages[static_cast<std::size_t>(stage)]);
+    FetchNetworks(stage);
     const bool precise = plan_.stages[static_cast<std::size_t>(stage)].precision.has_value();
     if (precise && options_.foundation.empty() && !options_.only_failed) return FlyUntilPrecise(stage);
     const std::vector<sweep::RunId> stored = store_->Stored();
@@ -220,12 +220,18 @@ class SweepRun {
   }
 
   // Those that the training stage left in the store, where this session did not train.
-  void FetchNetworks(const sweep::Stage& stage) {
-    const bool asked = std::any_of(stage.arms.begin(), stage.arms.end(),
-                                   [](const sweep::Arm& arm) { return NeedsTraining(arm.config); });
-    if (!asked || networks_ != nullptr) return;
+  void FetchNetworks(int number) {
+    const sweep::Stage& stage = plan_.stages[static_cast<std::size_t>(number)];
+    std::vector<int> asking;
+    for (int arm = 0; arm < static_cast<int>(stage.arms.size()); ++arm)
+      if (NeedsTraining(stage.arms[static_cast<std::size_t>(arm)].config)) asking.push_back(arm);
+    if (asking.empty() || networks_ != nullptr) return;
     const store::FlownNetworks flown = store::ResultReader(FoundationDir()).Networks();
-    if (flown.uses.empty())
+    const bool all = std::all_of(asking.begin(), asking.end(), [&](int arm) {
+      return std::any_of(flown.uses.begin(), flown.uses.end(),
+                         [&](const store::NetworkUse& use) { return use.stage == number && use.arm == arm; });
+    });
+    if (!all)
       throw UserError(fmt::format(
           "{}: holds no networks, which stage {} asks; 'ed3r run SWEEP --stage NAME --out {}' with "
           "the name of the training stage puts them there",

@@ -38,6 +38,14 @@ const metrics::ArmData* FindArm(const std::vector<const metrics::ArmData*>& arms
   return nullptr;
 }
 
+// Of arms of one name the last stage's counts, as in the paper's tables.
+bool FliesAgain(const metrics::ArmData& arm, std::span<const metrics::ArmData>::iterator later,
+                std::span<const metrics::ArmData>::iterator end) {
+  return std::any_of(later, end, [&](const metrics::ArmData& other) {
+    return other.name == arm.name && !other.missions.empty();
+  });
+}
+
 // Whether `name` is the P85 group of an arm with too few missions for one.
 bool IsSmallGroup(const metrics::ArmData& arm, const std::string& name) {
   return arm.name != name && metrics::SizeOfP85(arm.missions.size()) < kFewestInP85;
@@ -110,9 +118,9 @@ struct ResampledArms::View {
 ResampledArms::ResampledArms(std::span<const metrics::ArmData> arms, const std::vector<Cell>& cells) {
   std::set<std::string> names;
   for (const std::string& name : StudyArms()) names.insert(name);
-  for (const metrics::ArmData& arm : arms)
-    if (names.count(arm.name) > 0 && !arm.missions.empty() && FindArm(arms_, arm.name) == nullptr)
-      arms_.push_back(&arm);
+  for (auto arm = arms.begin(); arm != arms.end(); ++arm)
+    if (names.count(arm->name) > 0 && !arm->missions.empty() && !FliesAgain(*arm, arm + 1, arms.end()))
+      arms_.push_back(&*arm);
   Pair();
 
   std::map<std::string, std::vector<std::size_t>> wanted;

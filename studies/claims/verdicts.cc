@@ -116,10 +116,10 @@ void DecideNumber(const paper::Claim& claim, bool exact, Judgement& judged) {
 bool GrowsWithTheRun(const ParsedClaim& parsed, std::span<const metrics::ArmData> arms) {
   return std::any_of(parsed.cells.begin(), parsed.cells.end(), [&](const Cell& cell) {
     if (metrics::MetricDefinitions()[cell.metric].estimate != metrics::Estimate::kMaximum) return false;
-    const auto arm = std::find_if(arms.begin(), arms.end(), [&](const metrics::ArmData& data) {
+    const auto arm = std::find_if(arms.rbegin(), arms.rend(), [&](const metrics::ArmData& data) {
       return data.name == cell.arm && !data.missions.empty();
     });
-    return arm != arms.end() && static_cast<double>(arm->missions.size()) != kPaperMissions;
+    return arm != arms.rend() && static_cast<double>(arm->missions.size()) != kPaperMissions;
   });
 }
 

@@ -54,6 +54,20 @@ TEST(TrainingTest, ALaterWarmUpIsNotLearnedFromBeforeItIsFlown) {
   EXPECT_EQ(Ed3r("digest " + (scratch / "c").string()).out, Ed3r("digest " + run).out);
 }
 
+TEST(TrainingTest, AStageBeforeItsOwnNetworksIsRefused) {
+  const ScratchFolder scratch;
+  const std::string sweep = Write(scratch, "learn-send");
+  const std::string run = (scratch / "run").string();
+  const std::string parts =
+      fmt::format("run {} --quiet --out {} --cache {} --stage ", sweep, run, (scratch / "cache").string());
+  for (const char* stage : {"walk", "learn-walk", "first", "send"}) ASSERT_EQ(Ed3r(parts + stage).status, 0);
+  const CommandResult early = Ed3r(parts + "second");  // the store holds networks, of the first stage
+  EXPECT_EQ(early.status, 2);
+  EXPECT_NE(early.err.find("holds no networks, which stage second asks"), std::string::npos) << early.err;
+  EXPECT_EQ(Ed3r(parts + "learn-send").status, 0);
+  EXPECT_EQ(Ed3r(parts + "second").status, 0);
+}
+
 TEST(TrainingTest, AWarmUpThatNoTrainingStageStandsBehindIsRefused) {
   const ScratchFolder scratch;
   const std::string sweep = Write(scratch, "[learn-walk, send]");  // ecd2r learns from send, after it

@@ -425,6 +425,18 @@ TEST(VerdictsTest, ArmsOfOtherRotationsArePairedAndNamed) {
   EXPECT_FALSE(JudgeClaims({Order("ed3r-75 < ecd2r")}, ThreeArms()).networks_disagree);
 }
 
+// As the paper's tables do.
+TEST(VerdictsTest, OfArmsOfOneNameTheLastStagesCounts) {
+  std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 40}), MakeArm({"ecd2r", 25}),
+                                        MakeArm({"ed3r-75", 20})};
+  arms[0].stage = "first";
+  const ClaimStudy study = JudgeClaims({Order("ed3r-75 < ecd2r"), Energy("ed3r-75", "20")}, arms);
+  EXPECT_EQ(study.claims[0].all.verdict, Verdict::kDirectionHolds);
+  EXPECT_NEAR(study.claims[1].all.ours, 20, 2);
+  arms[2].missions.clear();  // planned, not flown yet
+  EXPECT_NEAR(JudgeOne(Energy("ed3r-75", "20"), arms).all.ours, 40, 4);
+}
+
 TEST(VerdictsTest, AreTheSameEveryTime) {
   const std::vector<metrics::ArmData> arms = ThreeArms();
   const ClaimStudy a = JudgeClaims(paper::PaperClaims(), arms), b = JudgeClaims(paper::PaperClaims(), arms);

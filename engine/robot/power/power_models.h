@@ -17,11 +17,11 @@ namespace ed3r::robot {
 
 // The body as the formulas see it.
 struct Rotorcraft {
-  double mass_kg = 0.0;
-  int propellers = 4;
-  double propeller_area_m2 = 0.0;  // A_prop = pi r^2 of one propeller
-  double front_area_m2 = 0.0;      // faces horizontal motion
-  double top_area_m2 = 0.0;        // faces vertical motion
+  double mass_kg{};
+  int propellers{};
+  double propeller_area_m2{};  // A_prop = pi r^2 of one propeller
+  double front_area_m2{};      // faces horizontal motion
+  double top_area_m2{};        // faces vertical motion
 
   double DiscAreaM2() const { return propellers * propeller_area_m2; }
 };
@@ -29,17 +29,17 @@ struct Rotorcraft {
 Rotorcraft MakeRotorcraft(const RobotConfig& robot);
 
 struct Air {
-  double density_kgm3 = 1.225;
-  double gravity_mps2 = 9.8;
+  double density_kgm3{};
+  double gravity_mps2{};
 };
 
 // The paper's model (Appendix, Power for Movement Energy Estimation). Its powers are mechanical; `efficiency`
 // is mechanical over electrical power and 1 in the paper.
 template <class T = double>
 struct PaperParameters {
-  T efficiency{1.0};
-  T drag_horizontal{0.55};  // C_dh
-  T drag_vertical{0.35};    // C_dv
+  T efficiency{EnergyConfig{}.paper_efficiency};
+  T drag_horizontal{RobotConfig{}.drag_horizontal};  // C_dh
+  T drag_vertical{RobotConfig{}.drag_vertical};      // C_dv
 };
 
 template <class T = double>
@@ -69,11 +69,11 @@ struct PaperPower {
 // below. A descent never charges the battery. Defaults: the Matrice 100, fitted.
 template <class T = double>
 struct MomentumParameters {
-  T efficiency{0.713};
-  T induced_factor{1.456};  // kappa
-  T interference{0.577};    // chi
-  T profile_share{0.0};     // c_p
-  T drag_area_m2{0.0925};   // f
+  T efficiency{EnergyConfig{}.momentum_efficiency};
+  T induced_factor{EnergyConfig{}.induced_factor};  // kappa
+  T interference{EnergyConfig{}.interference};      // chi
+  T profile_share{EnergyConfig{}.profile_share};    // c_p
+  T drag_area_m2{EnergyConfig{}.drag_area_m2};      // f
 };
 
 template <class T = double>
@@ -102,7 +102,7 @@ PaperPower<T> PaperPowersW(const PaperParameters<T>& parameters, const Rotorcraf
   const T vertical_drag =
       parameters.drag_vertical * (pressure * craft.top_area_m2 * vertical_mps * vertical_mps * vertical_mps);
   const double weight_n = craft.mass_kg * air.gravity_mps2;
-  T ascent(0.0), descent(0.0);
+  T ascent{}, descent{};
   switch (vertical_form) {
     case VerticalForm::kPrinted:
       ascent = weight_n + vertical_drag;
