@@ -27,19 +27,20 @@ struct EnvironmentConfig {
            .min = -12,
            .max = 12,
            .source = "none in the paper (A10)",
-           .meaning = "mean wind towards east"});
+           .meaning = "mean wind towards east; billed with energy.model momentum, the paper's powers are of "
+                      "still air"});
     visit("wind_y_mps", self.wind_y_mps,
           {.unit = "m/s",
            .min = -12,
            .max = 12,
            .source = "none in the paper (A10)",
-           .meaning = "mean wind towards north"});
+           .meaning = "mean wind towards north; billed like wind_x_mps"});
     visit("gust_mps", self.gust_mps,
           {.unit = "m/s",
            .min = 0,
            .max = 5,
            .source = "none in the paper (A10)",
-           .meaning = "standard deviation of gusts on each axis"});
+           .meaning = "standard deviation of gusts on each axis; flown, never billed"});
   }
 };
 

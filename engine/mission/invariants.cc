@@ -75,7 +75,7 @@ BrokenInvariant::BrokenInvariant(Invariant invariant, const std::string& detail)
 void CheckInvariants(const MissionRecord& record, const MissionLimits& limits) {
   CheckFinite(record);
   CheckTime(record);
-  CheckLedger(record, limits.power, limits.battery_j);
+  CheckLedger(record, limits.power, limits.battery_j, limits.horizontal_w);
   CheckBattery(record);
   CheckPositions(record, limits.scene, limits.gust_mps);
   CheckProbabilities(record);
@@ -103,13 +103,17 @@ void CheckTime(const MissionRecord& record) {
           "the timesteps take {} s, the mission {} s", duration_s, record.duration_s);
 }
 
-void CheckLedger(const MissionRecord& record, const robot::MovementPower& power, double battery_j) {
+void CheckLedger(const MissionRecord& record, const robot::MovementPower& power, double battery_j,
+                 std::span<const double> horizontal_w) {
+  ED3R_CHECK(horizontal_w.empty() || horizontal_w.size() == record.steps.size(), "a power for each timestep");
   double left_j = battery_j;
-  for (const TimestepRecord& step : record.steps) {
+  for (std::size_t i = 0; i < record.steps.size(); ++i) {
+    const TimestepRecord& step = record.steps[i];
+    const double across_w = horizontal_w.empty() ? power.horizontal_w : horizontal_w[i];
     for (const auto& [name, energy_j] : EnergiesOf(step))
       Require(energy_j >= 0.0, Invariant::kLedgerAddsUp, "timestep {}: {} is {}", step.k, name, energy_j);
     const double hovering_s = step.turning_s + step.sensing_s + step.computing_s + step.transmitting_s;
-    const double expected_j = power.hover_w * hovering_s + power.horizontal_w * step.horizontal_s +
+    const double expected_j = power.hover_w * hovering_s + across_w * step.horizontal_s +
                               power.ascent_w * step.ascent_s + power.descent_w * step.descent_s +
                               step.sensing_j + step.computation_j + step.transmission_j;
     Require(AddsUp(expected_j, step.total_j), Invariant::kLedgerAddsUp, "timestep {}: parts {} J, total {} J",

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -60,6 +61,7 @@ struct MissionLimits {
   double battery_j;  // at the start
   const world::Scene& scene;
   double gust_mps = 0.0;  // the robot may be carried out of the box by what it cannot hold
+  std::span<const double> horizontal_w = {};  // of each timestep's leg, where they differ
 };
 
 // Throws BrokenInvariant, the first in the order of the enumeration above.
@@ -68,7 +70,8 @@ void CheckInvariants(const MissionRecord& record, const MissionLimits& limits);
 // The parts of it.
 void CheckFinite(const MissionRecord& record);
 void CheckTime(const MissionRecord& record);
-void CheckLedger(const MissionRecord& record, const robot::MovementPower& power, double battery_j);
+void CheckLedger(const MissionRecord& record, const robot::MovementPower& power, double battery_j,
+                 std::span<const double> horizontal_w = {});
 void CheckBattery(const MissionRecord& record);
 void CheckPositions(const MissionRecord& record, const world::Scene& scene, double gust_mps);
 void CheckProbabilities(const MissionRecord& record);

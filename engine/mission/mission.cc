@@ -125,7 +125,8 @@ void Mission::Detect(const agents::ExecutionDecision& execution) {
   RecordLink(arrival_.conditions, arrival_.rc_distance_m, arrival_.link, last_);
   Sense(execution.execution);
   const robot::StepTime time = TimeOf(execution.execution);
-  const robot::StepEnergy energy = robot::Charge(power_, time, DevicesOf(execution.execution));
+  const robot::MovementPower power = PowerOfMove();
+  const robot::StepEnergy energy = robot::Charge(power, time, DevicesOf(execution.execution));
   last_.reward = agents::Reward(config_.agents, energy.TotalJ(), last_.scs, battery_j_);
   if (energy.TotalJ() > battery_j_) {  // Eq. 14; R8
     RecordLedger(time, energy, battery_j_, last_);
@@ -136,6 +137,7 @@ void Mission::Detect(const agents::ExecutionDecision& execution) {
   distance_m_ += move_.distance_m;
   RecordLedger(time, energy, battery_j_, last_);
   steps_.push_back(last_);
+  if (robot::BillsWind(config_.environment, config_.energy)) horizontal_w_.push_back(power.horizontal_w);
   ++k_;
   stage_ = Stage::kMotion;
 }
@@ -223,6 +225,11 @@ Outcome Mission::OutcomeOfCompletion() const {
   return real ? Outcome::kSuccess : Outcome::kFalsePositive;
 }
 
+robot::MovementPower Mission::PowerOfMove() const {
+  if (!robot::BillsWind(config_.environment, config_.energy)) return power_;
+  return robot::MovementPowerOf(config_.robot, config_.environment, config_.energy, move_.course);
+}
+
 MissionRecord Mission::Record() {
   ED3R_CHECK(Ended(), "the mission has not ended");
   MissionRecord record;
@@ -246,7 +253,8 @@ MissionRecord Mission::Record() {
   CheckInvariants(record, {.power = power_,
                            .battery_j = config_.robot.BatteryJ(),
                            .scene = task_.scene,
-                           .gust_mps = config_.environment.gust_mps});
+                           .gust_mps = config_.environment.gust_mps,
+                           .horizontal_w = horizontal_w_});
   return record;
 }
 

@@ -97,6 +97,7 @@ class Mission {
 
   void Sense(agents::Execution execution);
   robot::StepTime TimeOf(agents::Execution execution) const;
+  robot::MovementPower PowerOfMove() const;
   robot::DeviceEnergy DevicesOf(agents::Execution execution) const;
   robot::ComputationCost OnboardCost(agents::Execution execution) const;
   Outcome OutcomeOfCompletion() const;
@@ -105,12 +106,13 @@ class Mission {
   const Config& config_;
   const Scenario scenario_;
   const Eigen::Vector3d antenna_m_;
-  const robot::MovementPower power_;
+  const robot::MovementPower power_;  // a horizontal leg's in wind apart
   robot::Flight flight_;
   const std::unique_ptr<perception::Sensor> sensor_;
   double battery_j_;  // beta_k
   double distance_m_ = 0.0;
   std::vector<TimestepRecord> steps_;
+  std::vector<double> horizontal_w_;  // of each of them, where wind is billed
   std::optional<Outcome> outcome_;
 
   // Of the timestep that is under way.

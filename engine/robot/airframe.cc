@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "engine/robot/rotors.h"
 
@@ -179,6 +180,28 @@ double VerticalStandOffM(const RobotConfig& robot) {
   return robot.safety_distance_m + 0.5 * robot.height_m + kHaltReserveM;
 }
 
+namespace {
+
+// A leg is billed at robot.speed_mps: an airframe that must fly slower would be billed for another flight.
+std::string CheckSpeed(const Airframe& airframe, const Config& config) {
+  Config unseeing = config;
+  unseeing.agents.obstacle_avoidance = false;
+  const FlightEnvelope envelope = EnvelopeOf(airframe, config), by_force = EnvelopeOf(airframe, unseeing);
+  for (const auto& [flown, forced, way] :
+       {std::tuple(&envelope.horizontal, &by_force.horizontal, "across"),
+        std::tuple(&envelope.vertical, &by_force.vertical, "up and down")}) {
+    if (flown->speed_mps >= config.robot.speed_mps) continue;
+    return fmt::format("robot.speed_mps: '{:g}' is not allowed; {} the robot flies at most {:.2f} m/s {}",
+                       config.robot.speed_mps, way, std::floor(100.0 * flown->speed_mps) / 100.0,
+                       flown->speed_mps < forced->speed_mps
+                           ? "to brake within sensing.lidar_range_m and robot.safety_distance_m"
+                           : "against its drag (robot.drag_horizontal, drag_vertical) and the wind");
+  }
+  return "";
+}
+
+}  // namespace
+
 std::string CheckFlyable(const Config& config) {
   const Airframe airframe(config);
   const RobotConfig& robot = config.robot;
@@ -204,7 +227,7 @@ std::string CheckFlyable(const Config& config) {
         "sensing.lidar_range_m: '{:g}' is not allowed; with robot.safety_distance_m = {:g} and the robot's "
         "size at least {:.1f} m",
         config.sensing.lidar_range_m, robot.safety_distance_m, least_range_m);
-  return "";
+  return CheckSpeed(airframe, config);
 }
 
 }  // namespace ed3r::robot

@@ -78,7 +78,7 @@ FlightEnvelope EnvelopeOf(const Airframe& airframe, const Config& config);
 double HorizontalStandOffM(const RobotConfig& robot);
 double VerticalStandOffM(const RobotConfig& robot);
 
-// Whether the airframe can fly and hold its place in the configured wind: "" or a clause like CheckParameters'
+// Whether the airframe can fly, at robot.speed_mps, and hold its place in the configured wind: "" or a clause like CheckParameters'
 // ("key: 'value' is not allowed; ...").
 [[nodiscard]] std::string CheckFlyable(const Config& config);
 

@@ -18,13 +18,18 @@ MovementPower PaperModel(const Rotorcraft& craft, const Air& air, const RobotCon
 }
 
 MovementPower MomentumModel(const Rotorcraft& craft, const Air& air, double speed_mps,
-                            const EnergyConfig& energy) {
+                            const EnergyConfig& energy, const Eigen::Vector2d& wind_mps,
+                            const Eigen::Vector2d& course) {
   const MomentumParameters<> parameters{energy.momentum_efficiency, energy.induced_factor,
                                         energy.interference, energy.profile_share, energy.drag_area_m2};
   const auto power_w = [&](double horizontal_mps, double climb_mps) {
     return MomentumPowerW(parameters, craft.mass_kg, horizontal_mps, climb_mps, air, craft.DiscAreaM2());
   };
-  return {power_w(0.0, 0.0), power_w(speed_mps, 0.0), power_w(0.0, speed_mps), power_w(0.0, -speed_mps)};
+  const double drift_mps = wind_mps.norm();
+  const double across_mps =
+      course.isZero() ? std::hypot(speed_mps, drift_mps) : (speed_mps * course - wind_mps).norm();
+  return {power_w(drift_mps, 0.0), power_w(across_mps, 0.0), power_w(drift_mps, speed_mps),
+          power_w(drift_mps, -speed_mps)};
 }
 
 double DescentW(const Config& config, double speed_mps) {
@@ -36,11 +41,18 @@ double DescentW(const Config& config, double speed_mps) {
 }  // namespace
 
 MovementPower MovementPowerOf(const RobotConfig& robot, const EnvironmentConfig& environment,
-                              const EnergyConfig& energy) {
+                              const EnergyConfig& energy, const Eigen::Vector2d& course) {
   const Rotorcraft craft = MakeRotorcraft(robot);
   const Air air{environment.air_density_kgm3, environment.gravity_mps2};
-  if (energy.model == PowerModel::kMomentum) return MomentumModel(craft, air, robot.speed_mps, energy);
+  if (energy.model == PowerModel::kMomentum)
+    return MomentumModel(craft, air, robot.speed_mps, energy,
+                         {environment.wind_x_mps, environment.wind_y_mps}, course);
   return PaperModel(craft, air, robot, energy);
+}
+
+bool BillsWind(const EnvironmentConfig& environment, const EnergyConfig& energy) {
+  return energy.model == PowerModel::kMomentum &&
+         (environment.wind_x_mps != 0.0 || environment.wind_y_mps != 0.0);
 }
 
 std::string CheckBilledPower(const Config& config) {

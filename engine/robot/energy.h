@@ -2,6 +2,7 @@
 // Pure functions of their arguments.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 
 #include "engine/config/config.h"
@@ -18,9 +19,15 @@ struct MovementPower {
   double ascent_w = 0.0;
   double descent_w = 0.0;
 };
-// By energy.model: the paper's powers, or momentum theory at the same speeds (engine/robot/power).
+// By energy.model: the paper's powers, which are those of still air, or momentum theory at airspeeds (engine/robot/power): what
+// the robot flies over ground less the mean wind, so that to hold a place in wind takes the power of flying as fast. Gusts are
+// flown and not billed. course: of the horizontal leg over ground, east and north, of length 1; zero: across the wind.
 MovementPower MovementPowerOf(const RobotConfig& robot, const EnvironmentConfig& environment,
-                              const EnergyConfig& energy);
+                              const EnergyConfig& energy,
+                              const Eigen::Vector2d& course = Eigen::Vector2d::Zero());
+
+// Whether the power of a horizontal leg depends on its course.
+bool BillsWind(const EnvironmentConfig& environment, const EnergyConfig& energy);
 
 // Whether every movement of a mission draws power, as closed forms have it: "" or a clause like CheckParameters'. The paper's
 // power of a descent is weight less drag, which ends below nothing where the robot is fast.

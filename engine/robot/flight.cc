@@ -288,6 +288,7 @@ FlownMove Flight::Impl::Execute(const MotionCommand& command, std::uint32_t the_
   pose.tilt_rad = command.tilt_rad;
   move.end = pose;
   move.distance_m = path_m;
+  move.course = flat.direction.head<2>();
   move.halted = across.halted || up_or_down.halted;
   move.contact_steps = world.ContactSteps() - contacts_before;
   return move;

@@ -28,8 +28,10 @@ struct FlownMove {
   double descent_s = 0.0;
   double hovering_s = 0.0;  // turning beyond the legs' own time (R35)
   double distance_m = 0.0;  // length of the path flown
-  bool halted = false;      // the 2 m safety rule cut a leg short
-  int contact_steps = 0;    // physics steps with contact; 0 in normal operation
+  Eigen::Vector2d course =
+      Eigen::Vector2d::Zero();  // unit vector of the horizontal leg; zero where there was none
+  bool halted = false;          // the 2 m safety rule cut a leg short
+  int contact_steps = 0;        // physics steps with contact; 0 in normal operation
 };
 
 }  // namespace ed3r::robot

@@ -132,6 +132,30 @@ TEST_F(MissionTest, EitherEnergyModelAddsUp) {
   EXPECT_LT(power.descent_w, power.hover_w);
 }
 
+// Each leg at its own airspeed: the ledger is proven against them, and legs with the wind are cheaper than legs against it.
+TEST_F(MissionTest, WindIsBilledWhereThePowersKnowIt) {
+  config_.energy.model = PowerModel::kMomentum;
+  config_.environment.wind_x_mps = 6.0;
+  const robot::MovementPower power =
+      robot::MovementPowerOf(config_.robot, config_.environment, config_.energy);
+  const auto along_w = [&](double x) {
+    return robot::MovementPowerOf(config_.robot, config_.environment, config_.energy, {x, 0}).horizontal_w;
+  };
+  const MissionRecord record = Fly("random", 3);
+  double least_w = 1e9, most_w = 0.0;
+  for (const TimestepRecord& step : record.steps) {
+    EXPECT_NEAR(step.hover_sensing_j, power.hover_w * step.sensing_s, 1e-6);
+    if (step.horizontal_s < 0.1) continue;
+    const double here_w = step.horizontal_j / step.horizontal_s;
+    least_w = std::min(least_w, here_w), most_w = std::max(most_w, here_w);
+  }
+  const double with_w = along_w(1), against_w = along_w(-1);
+  EXPECT_GT(most_w - least_w, 0.5 * std::abs(against_w - with_w));
+  EXPECT_LE(most_w, std::max({against_w, with_w, power.horizontal_w}) + 1e-9);
+  config_.environment.wind_x_mps = 0.0;
+  EXPECT_NE(Fly("random", 3).steps.front().hover_sensing_j, record.steps.front().hover_sensing_j);
+}
+
 TEST_F(MissionTest, TheSameTaskGivesTheSameBits) {
   const MissionRecord first = Fly("rbs", 4);
   const MissionRecord second = Fly("rbs", 4);

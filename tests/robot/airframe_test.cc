@@ -76,5 +76,31 @@ TEST(AirframeTest, RefusalsSayWhatIsAllowed) {
       "turn the body too slowly to fly");
 }
 
+// It would be billed for a flight at another speed than it flies.
+TEST(AirframeTest, ASpeedThatIsNotReachedIsRefused) {
+  Config config;
+  config.robot.speed_mps = 10;
+  EXPECT_EQ(CheckFlyable(config), "");
+  config.robot.drag_horizontal = 5;
+  EXPECT_EQ(CheckFlyable(config),
+            "robot.speed_mps: '10' is not allowed; across the robot flies at most 6.07 m/s against its drag "
+            "(robot.drag_horizontal, drag_vertical) and the wind");
+  config = Config();
+  config.robot.speed_mps = 10;
+  config.environment.wind_y_mps = 12;
+  EXPECT_NE(CheckFlyable(config).find("across the robot flies at most 6."), std::string::npos);
+  config = Config();
+  config.robot.drag_vertical = 5;
+  EXPECT_NE(CheckFlyable(config).find("up and down the robot flies at most 2.8"), std::string::npos);
+  config = Config();
+  config.robot.speed_mps = 10;
+  config.sensing.lidar_range_m = 8;
+  EXPECT_EQ(CheckFlyable(config),
+            "robot.speed_mps: '10' is not allowed; across the robot flies at most 6.22 m/s to brake within "
+            "sensing.lidar_range_m and robot.safety_distance_m");
+  config.agents.obstacle_avoidance = false;
+  EXPECT_EQ(CheckFlyable(config), "");
+}
+
 }  // namespace
 }  // namespace ed3r::robot

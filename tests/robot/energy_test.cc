@@ -132,6 +132,34 @@ TEST(EnergyTest, TheFourMovementsAreAtTheirSpeedAndStillOtherwise) {
   EXPECT_EQ(power.descent_w, power_w(0, -4));
 }
 
+// Airspeeds in a wind of (3, -4) m/s: 5 held in place, 4 - 3 and 4 away along (1, 0), 4 + 4 and 3 along (0, 1).
+TEST(EnergyTest, MomentumTheoryIsBilledAtAirspeeds) {
+  EnergyConfig energy;
+  energy.model = PowerModel::kMomentum;
+  EnvironmentConfig windy = Thin();
+  windy.wind_x_mps = 3.0, windy.wind_y_mps = -4.0;
+  const MomentumParameters<> parameters{energy.momentum_efficiency, energy.induced_factor,
+                                        energy.interference, energy.profile_share, energy.drag_area_m2};
+  const auto power_w = [&](double horizontal_mps, double climb_mps) {
+    return MomentumPowerW(parameters, 3.0, horizontal_mps, climb_mps, Air{0.8, 9.0}, kDiscM2);
+  };
+  const MovementPower power = MovementPowerOf(Heavy(), windy, energy);
+  EXPECT_NEAR(power.hover_w, power_w(5, 0), 1e-9);
+  EXPECT_NEAR(power.ascent_w, power_w(5, 4), 1e-9);
+  EXPECT_NEAR(power.descent_w, power_w(5, -4), 1e-9);
+  EXPECT_NEAR(power.horizontal_w, power_w(std::sqrt(16.0 + 25.0), 0), 1e-9) << "across the wind";
+  EXPECT_NEAR(MovementPowerOf(Heavy(), windy, energy, {1, 0}).horizontal_w, power_w(std::sqrt(1.0 + 16.0), 0),
+              1e-9);
+  EXPECT_NEAR(MovementPowerOf(Heavy(), windy, energy, {0, 1}).horizontal_w, power_w(std::sqrt(64.0 + 9.0), 0),
+              1e-9);
+  EXPECT_TRUE(BillsWind(windy, energy));
+  EXPECT_FALSE(BillsWind(Thin(), energy));
+  energy.model = PowerModel::kPaper;  // of still air
+  EXPECT_FALSE(BillsWind(windy, energy));
+  EXPECT_EQ(MovementPowerOf(Heavy(), windy, energy, {1, 0}).horizontal_w,
+            MovementPowerOf(Heavy(), Thin(), energy).horizontal_w);
+}
+
 // The shares at several airspeeds: v_i of Glauert's equation found by bisection outside this program, the rest by hand from
 // P = [kappa (1 + chi (1 - cos X)) T v_i + c_p T^1.5 / sqrt(2 rho A) + D V + m g v_v] / efficiency.
 TEST(EnergyTest, MomentumTheoryInFlight) {

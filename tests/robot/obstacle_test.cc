@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/core/random.h"
+#include "engine/robot/airframe.h"
 #include "engine/robot/flight.h"
 #include "tests/world/scene_builder.h"
 
@@ -130,9 +131,11 @@ TEST(ObstacleTest, ShortSightedLidarsDoNotHaltInFreeAir) {
   Config config;
   config.sensing.lidar_range_m = 8.0;
   config.agents.axis_range_m = 200.0;
-  config.robot.speed_mps = 15.0;
   for (const double rate_hz : {10.0, 24.0, 120.0}) {
     config.sensing.lidar_rate_hz = rate_hz;
+    config.robot.speed_mps = 15.0;
+    const FlightEnvelope envelope = EnvelopeOf(Airframe(config), config);
+    config.robot.speed_mps = std::min(envelope.horizontal.speed_mps, envelope.vertical.speed_mps);
     Flight flight(Cliff(), config, {.position_m = {20, 100, 30}}, 1, 0);
     const FlownMove move = flight.Execute(Move(60, 50, 0), 1);
     EXPECT_FALSE(move.halted);
