@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "engine/store/reader.h"
@@ -33,6 +34,16 @@ double HalfWidthOf(metrics::ArmData arm, int missions, const std::string& metric
   return 0.5 * (value.hi - value.lo);
 }
 
+std::string WorldOf(const std::vector<figures::ArmPlan>& plans,
+                    const std::map<std::string, std::string>& fingerprints, const metrics::ArmData& arm) {
+  const auto plan = std::find_if(plans.begin(), plans.end(), [&](const figures::ArmPlan& p) {
+    return p.stage == arm.stage && p.name == arm.name;
+  });
+  if (plan == plans.end()) return "";
+  const auto found = fingerprints.find(plan->Setting("mission.world"));
+  return found == fingerprints.end() ? "" : found->second;
+}
+
 // An arm that is known well enough misses nothing.
 bool KnownWellEnough(const metrics::ArmData& arm, const std::optional<sweep::Precision>& precision) {
   if (!precision) return false;
@@ -60,6 +71,7 @@ RunResults LoadRun(const std::string& dir) {
     for (int a = 0; a < static_cast<int>(stage.arms.size()); ++a) {
       LoadedMissions loaded = LoadMissions(reader, s, a);
       metrics::ArmData arm{stage.name, stage.arms[a].name, std::move(loaded.records)};
+      arm.world = WorldOf(plans, reader.StoredRecipe().inputs, arm);
       const auto flown = static_cast<std::int64_t>(arm.missions.size());
       // Counted from the missions at hand: more may have come in since the status was read.
       arm.failed = static_cast<int>(std::min(status[layout.RunIndex(s, a)].failed, stage.missions - flown));

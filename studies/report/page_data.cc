@@ -227,6 +227,8 @@ Json MakePageData(const PageDataInputs& inputs) {
   data["broken"] = inputs.broken;
   data["claims"] = ClaimsJson(report.claims);
   data["differences"] = variants::ArmDifferenceJson(report.differences);
+  data["difference_notes"] = report.difference_notes;
+  data["variant_notes"] = report.variant_notes;
   data["tables"] = Json::array();
   for (const tables::StudyTable& table : report.tables) data["tables"].push_back(TableJson(table));
   for (const char* part : {"world", "world_note", "missions_shown", "variants", "figures"})

@@ -13,6 +13,7 @@
 #include "studies/paper/claims.h"
 #include "studies/tables/data_files.h"
 #include "studies/tables/layout.h"
+#include "studies/variants/pairing_notes.h"
 
 namespace ed3r::report {
 namespace {
@@ -134,6 +135,8 @@ Report MakeReport(const RunResults& results, const RunDepartures& departures, Ju
   if (!variants) report.told = report.arms;
   report.claims = ClaimsOf(report, arms);
   report.differences = variants::CompareArms(Uncompared(report.claims, arms));
+  report.difference_notes = variants::ArmPairingNotes(Uncompared(report.claims, arms));
+  report.variant_notes = variants::VariantPairingNotes(results.arms);
   report.convergence = claims::Convergence(arms);
   report.look_forward = tables::LookForwardOf(arms);
   TakeP85Intervals(report.claims, p85);
@@ -148,6 +151,16 @@ Report MakeReport(const RunResults& results, const RunDepartures& departures, Ju
   return report;
 }
 
+namespace {
+
+std::string Paragraphs(const std::vector<std::string>& notes) {
+  std::string text;
+  for (const std::string& note : notes) text += tables::Wrap(note, "", tables::kTerminalWidth);
+  return text;
+}
+
+}  // namespace
+
 std::string ReportText(const Report& report) {
   std::string text = report.name;
   if (!report.mixed_code.empty()) text += fmt::format(", MIXED CODE (--accept-mixed): {}", report.mixed_code);
@@ -155,8 +168,7 @@ std::string ReportText(const Report& report) {
   if (report.claims.networks > 1)
     text += fmt::format(", {} trained networks of each kind", report.claims.networks);
   text += '\n';
-  for (const std::string& note : report.DepartureNotes())
-    text += tables::Wrap(note, "", tables::kTerminalWidth);
+  text += Paragraphs(report.DepartureNotes());
   text += '\n';
   if (const std::string note = VariantNote(report); !note.empty())
     text += tables::Wrap(note, "", tables::kTerminalWidth) + '\n';
@@ -165,13 +177,15 @@ std::string ReportText(const Report& report) {
   if (!generalisation.empty()) text += '\n' + generalisation;
   const std::string look_forward = tables::LookForwardText(report.look_forward);
   if (!look_forward.empty()) text += '\n' + look_forward;
-  const std::string differences = variants::ArmDifferenceText(report.differences);
+  const std::string differences =
+      variants::ArmDifferenceText(report.differences) + Paragraphs(report.difference_notes);
   if (!differences.empty()) text += '\n' + differences;
   const std::string verdicts = claims::VerdictText(report.claims);
   if (!verdicts.empty()) text += '\n' + verdicts;
   const std::string variants = variants::VariantText(report.variants);
   if (variants.empty()) return text;
-  return text + '\n' + variants::VariantValuesText(report.arms) + '\n' + variants;
+  return text + '\n' + variants::VariantValuesText(report.arms) + '\n' + variants +
+         Paragraphs(report.variant_notes);
 }
 
 nlohmann::ordered_json ReportJson(const Report& report) {
@@ -184,6 +198,7 @@ nlohmann::ordered_json ReportJson(const Report& report) {
   json["generalisation"] = tables::GeneralisationJson(report.generalisation);
   json["look_forward"] = tables::LookForwardJson(report.look_forward);
   json["differences"] = variants::ArmDifferenceJson(report.differences);
+  json["difference_notes"] = report.difference_notes;
   json["claims"] = claims::VerdictJson(report.claims);
   return json;
 }

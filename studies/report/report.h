@@ -40,7 +40,9 @@ struct Report {
   std::vector<tables::StudyTable> tables;              // for papers and pages
   claims::ClaimStudy claims;                         // without any where what is told departs from the paper
   std::vector<variants::ArmDifference> differences;  // of the arms told, in stages that no verdicts compare
+  std::vector<std::string> difference_notes;         // which arms those leave out
   variants::VariantStudy variants;
+  std::vector<std::string> variant_notes;             // which of them met other scenarios
   std::vector<claims::ConvergencePoint> convergence;  // of the arms told
   std::vector<tables::LookForward> look_forward;      // of the arms told that ask a network
 

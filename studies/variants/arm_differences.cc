@@ -1,15 +1,19 @@
 #include "studies/variants/arm_differences.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <utility>
 
 #include "engine/core/csv_table.h"
 #include "studies/metrics/number_text.h"
 #include "studies/statistics/holm.h"
 #include "studies/tables/layout.h"
 #include "studies/variants/difference_text.h"
+#include "studies/variants/pairing_notes.h"
 
 namespace ed3r::variants {
 namespace {
@@ -77,6 +81,29 @@ std::vector<ArmDifference> CompareArms(std::span<const metrics::ArmData> arms,
   }
   Correct(differences);
   return differences;
+}
+
+std::vector<std::string> ArmPairingNotes(std::span<const metrics::ArmData> arms) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> left_out,
+      other_worlds;  // by stage, reference
+  for (const metrics::ArmData& arm : arms) {
+    const metrics::ArmData* const reference = ReferenceOf(arms, arm.stage, {});
+    if (reference == nullptr || &arm == reference) continue;
+    const std::pair key(arm.stage, reference->name);
+    if (!SameScenarios(*reference, arm))
+      left_out[key].push_back(arm.name);
+    else if (OtherWorlds(*reference, arm))
+      other_worlds[key].push_back(arm.name);
+  }
+  std::vector<std::string> notes;
+  for (const auto& [key, names] : left_out)
+    notes.push_back(
+        fmt::format("{}: not compared with '{}' are {}, whose scenarios of one number begin elsewhere or "
+                    "look for another fire.",
+                    key.first, key.second, fmt::join(names, ", ")));
+  for (const auto& [key, names] : other_worlds)
+    for (std::string& note : PlaceNotes({}, names, key.second)) notes.push_back(std::move(note));
+  return notes;
 }
 
 std::string ArmDifferenceText(std::span<const ArmDifference> differences) {

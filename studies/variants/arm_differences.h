@@ -28,6 +28,9 @@ struct ArmDifference : PairedDifference {
 std::vector<ArmDifference> CompareArms(std::span<const metrics::ArmData> arms,
                                        std::string_view reference = {});
 
+// The arms that it leaves out for their scenarios, and those of other worlds, in sentences.
+std::vector<std::string> ArmPairingNotes(std::span<const metrics::ArmData> arms);
+
 // A table of each stage, in lines of at most kTerminalWidth characters; "" without differences.
 std::string ArmDifferenceText(std::span<const ArmDifference> differences);
 

@@ -149,4 +149,8 @@ bool SameScenarios(const metrics::ArmData& a, const metrics::ArmData& b) {
   });
 }
 
+bool OtherWorlds(const metrics::ArmData& a, const metrics::ArmData& b) {
+  return !a.world.empty() && !b.world.empty() && a.world != b.world;
+}
+
 }  // namespace ed3r::variants

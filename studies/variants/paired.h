@@ -36,4 +36,7 @@ PairedDifference DifferenceOf(const metrics::ArmData& base, const metrics::ArmDa
 // do not. True where the arms share no scenario.
 bool SameScenarios(const metrics::ArmData& a, const metrics::ArmData& b);
 
+// Whether they were flown in worlds of other content: a place of one number may then lie elsewhere.
+bool OtherWorlds(const metrics::ArmData& a, const metrics::ArmData& b);
+
 }  // namespace ed3r::variants

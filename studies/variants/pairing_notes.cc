@@ -8,6 +8,7 @@
 #include <set>
 
 #include "studies/variants/paired.h"
+#include "studies/variants/variants.h"
 
 namespace ed3r::variants {
 namespace {
@@ -66,6 +67,43 @@ std::vector<std::string> PairingNotes(const LabelledRun& first, const LabelledRu
                     "that pairs have nothing "
                     "in common",
                     first.label, other.label, fmt::join(elsewhere, ", ")));
+  return notes;
+}
+
+std::vector<std::string> VariantPairingNotes(std::span<const metrics::ArmData> arms) {
+  const std::vector<std::string> variants = VariantsOf(arms);
+  if (variants.empty()) return {};
+  const std::vector<metrics::ArmData> first = ArmsOfVariant(arms, variants.front());
+  std::vector<std::string> elsewhere, other_worlds;
+  for (const std::string& variant : variants) {
+    const std::vector<metrics::ArmData> own = ArmsOfVariant(arms, variant);
+    const auto any = [&](auto differ) {
+      return std::any_of(first.begin(), first.end(), [&](const metrics::ArmData& arm) {
+        const metrics::ArmData* const beside = Find(own, arm);
+        return beside != nullptr && differ(arm, *beside);
+      });
+    };
+    if (any([](const auto& a, const auto& b) { return !SameScenarios(a, b); }))
+      elsewhere.push_back(variant);
+    else if (any(OtherWorlds))
+      other_worlds.push_back(variant);
+  }
+  return PlaceNotes(elsewhere, other_worlds, variants.front());
+}
+
+std::vector<std::string> PlaceNotes(const std::vector<std::string>& elsewhere,
+                                    const std::vector<std::string>& other_worlds, const std::string& than) {
+  std::vector<std::string> notes;
+  if (!elsewhere.empty())
+    notes.push_back(
+        fmt::format("{}: scenarios of one number begin elsewhere, or look for another fire, than those of "
+                    "'{}': pairs have "
+                    "nothing in common.",
+                    fmt::join(elsewhere, ", "), than));
+  if (!other_worlds.empty())
+    notes.push_back(fmt::format(
+        "{}: not the world of '{}'; a place of one number may lie elsewhere ('ed3r world FILE' lists them).",
+        fmt::join(other_worlds, ", "), than));
   return notes;
 }
 

@@ -18,4 +18,11 @@ struct LabelledRun {
 // in common, none are, or whose scenarios are others under the same numbers. Empty where nothing is left out.
 std::vector<std::string> PairingNotes(const LabelledRun& first, const LabelledRun& other, bool same_draws);
 
+// Which variants did not meet the scenarios of the first one (ARM@VARIANT): they begin elsewhere, or in another world.
+std::vector<std::string> VariantPairingNotes(std::span<const metrics::ArmData> arms);
+
+// "a, b: NOTHING IN COMMON", "c: ANOTHER WORLD", of arms or variants that `than` is compared with; none where both are empty.
+std::vector<std::string> PlaceNotes(const std::vector<std::string>& elsewhere,
+                                    const std::vector<std::string>& other_worlds, const std::string& than);
+
 }  // namespace ed3r::variants

@@ -90,6 +90,10 @@ TEST(ArmDifferencesTest, OtherScenariosAreNotPaired) {
   const std::vector<variants::ArmDifference> differences = variants::CompareArms(arms);
   ASSERT_EQ(differences.size(), 3u);
   EXPECT_EQ(differences[0].arm, "other");
+  arms[1].world = "one", arms[2].world = "another";
+  const std::string text = report::ReportText(report::MakeReport({"own", arms}, {}));
+  EXPECT_NE(text.find("not compared with 'rbs' are mine, whose scenarios"), std::string::npos) << text;
+  EXPECT_NE(text.find("not the world of 'rbs'; a place of one number may lie"), std::string::npos) << text;
 }
 
 TEST(ArmDifferencesTest, FewPairsSayWhatTheyCan) {

@@ -44,6 +44,21 @@ TEST(VariantsTest, ArmsFindTheirVariants) {
   EXPECT_EQ(heavy[0].missions.front().scenario, 9);
 }
 
+TEST(VariantsTest, OtherPlacesAreSaid) {
+  std::vector<metrics::ArmData> arms = Study();
+  EXPECT_TRUE(variants::VariantPairingNotes(arms).empty());
+  arms[1].world = "with a larger fire";
+  EXPECT_TRUE(variants::VariantPairingNotes(arms).empty()) << "the other one is not known";
+  arms[0].world = "as it is";
+  std::vector<std::string> notes = variants::VariantPairingNotes(arms);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0].find("heavy: not the world of 'base'"), 0u) << notes[0];
+  for (mission::MissionRecord& mission : arms[1].missions) mission.site += 1;
+  notes = variants::VariantPairingNotes(arms);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0].find("heavy: scenarios of one number begin elsewhere"), 0u) << notes[0];
+}
+
 TEST(VariantsTest, DifferencesArePairedByScenario) {
   const variants::VariantStudy study = variants::CompareVariants(Study(), variants::Verdicts::kJudged);
   ASSERT_EQ(study.differences.size(), 3u);

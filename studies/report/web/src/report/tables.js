@@ -111,7 +111,8 @@ const differenceCell = (row) => [
 /** Arms of a stage minus one of them, where no claims of the paper compare them. */
 function differences(model) {
   const rows = model.data.differences;
-  if (!rows || rows.length === 0) return null;
+  const notes = (model.data.difference_notes ?? []).map((note) => el("p", {}, note));
+  if (!rows || rows.length === 0) return notes.length > 0 ? notes : null;
   const heading = (row) => model.byName[row.metric]?.heading ?? row.metric;
   return [
     el("h3", { id: "differences" }, "Arms compared"),
@@ -132,6 +133,7 @@ function differences(model) {
       rows,
       { caption: "Arms compared" },
     ),
+    ...notes,
     el("p", { class: "files" }, el("a", { href: "differences.csv" }, "differences.csv")),
   ];
 }
@@ -160,6 +162,7 @@ function variants(model) {
       study.differences,
       { caption: "What each variant changes" },
     ),
+    ...(model.data.variant_notes ?? []).map((note) => el("p", {}, note)),
     !model.data.compared &&
       el(
         "p",
