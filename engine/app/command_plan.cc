@@ -7,6 +7,7 @@
 
 #include "engine/app/commands.h"
 #include "engine/app/expected_time.h"
+#include "engine/app/idle_settings.h"
 #include "engine/app/sweep_arguments.h"
 #include "engine/app/words.h"
 #include "engine/schedule/inputs.h"
@@ -23,8 +24,11 @@ struct Options {
 double ExpectedWallS(const sweep::Stage& stage, int threads) { return ExpectedCoreS(stage) / threads; }
 
 void PrintJson(const sweep::SweepPlan& plan, int threads, std::int64_t shards) {
-  nlohmann::ordered_json object = {
-      {"name", plan.name}, {"question", plan.question}, {"seed", plan.seed}, {"missions", plan.Missions()}};
+  nlohmann::ordered_json object = {{"name", plan.name},
+                                   {"question", plan.question},
+                                   {"seed", plan.seed},
+                                   {"missions", plan.Missions()},
+                                   {"notes", IdleSettings(plan)}};
   for (const sweep::Stage& stage : plan.stages) {
     nlohmann::ordered_json arms = nlohmann::ordered_json::array();
     for (const sweep::Arm& arm : stage.arms) {
@@ -94,6 +98,9 @@ void PrintText(const sweep::SweepPlan& plan, int threads, std::int64_t shards) {
       fmt::print("  {:<14}{}\n", arm.name, settings);
     }
   }
+  const std::vector<std::string> idle = IdleSettings(plan);
+  if (!idle.empty()) fmt::print("\n");
+  for (const std::string& sentence : idle) fmt::print("note: {}\n", sentence);
 }
 
 }  // namespace

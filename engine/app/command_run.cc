@@ -5,6 +5,7 @@
 
 #include "engine/app/commands.h"
 #include "engine/app/finished_run.h"
+#include "engine/app/idle_settings.h"
 #include "engine/app/machine.h"
 #include "engine/app/shard_text.h"
 #include "engine/app/stored_run.h"
@@ -121,6 +122,8 @@ int Run(const Options& options) {
   if (all_of_it && TellFinishedRun(plan, dir, options.quiet)) return kDone;
   const schedule::Inputs inputs(plan);
   InstallInterruptHandler();
+  if (!options.quiet)
+    for (const std::string& sentence : IdleSettings(plan)) Tell("note: {}", sentence);
 
   schedule::SweepOptions sweep;
   sweep.dir = dir;

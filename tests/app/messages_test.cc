@@ -74,6 +74,30 @@ TEST(MessagesTest, WhatNoMissionCanFlyIsSaidBeforeAnyFlies) {
   EXPECT_EQ(Ed3r("plan " + kRbs + fast + " --set energy.vertical_form=climb").status, 0);
 }
 
+TEST(MessagesTest, SettingsThatNobodyHeedsAreSaid) {
+  const auto notes = [](const std::string& settings) {
+    const std::string text = Ed3r("plan " + kRbs + settings).out;
+    const std::size_t first = text.find("note: ");
+    return first == std::string::npos ? "" : text.substr(first);
+  };
+  EXPECT_EQ(notes(""), "");
+  const std::string wind = " --set environment.wind_x_mps=4";
+  EXPECT_EQ(notes(wind).find("note: environment.wind_x_mps: wind is flown in and not billed"), 0u)
+      << notes(wind);
+  EXPECT_EQ(notes(wind + " --set energy.model=momentum"), "");
+  EXPECT_EQ(notes(" --set energy.interference=0.4"),
+            "note: energy.interference: only energy.model momentum heeds this\n");
+  EXPECT_EQ(notes(" --set mission.start_yaw_deg=90"),
+            "note: mission.start_yaw_deg: only mission.start_yaw fixed heeds this\n");
+  EXPECT_EQ(notes(" --set mission.start_yaw_deg=90 --set mission.start_yaw=fixed"), "");
+  EXPECT_EQ(notes(" --set perception.render.noise=3 --set training.epochs=5"),
+            "note: perception.render.noise: only perception.tier pixels heeds this\n"
+            "note: training.epochs: no arm asks a network that is trained\n");
+  EXPECT_NE(Ed3r("run --missions 1 " + kRbs + wind + " --out " + (ScratchFolder() / "run").string())
+                .err.find("note: env"),
+            std::string::npos);
+}
+
 TEST(MessagesTest, ANumberIsWrittenInDigitsOrRefused) {
   const ScratchFolder scratch;
   const std::string out = (scratch / "run").string();
