@@ -67,6 +67,8 @@ TEST(EnergyTest, VerticalFlightInEachForm) {
   RobotConfig fast = Heavy();
   fast.speed_mps = 8.0;
   EXPECT_EQ(MovementPowerOf(fast, Thin(), energy).descent_w, 0.0) << "a descent does not charge the battery";
+  fast.speed_mps = (climb.hover_w - 5e-4) / 27;
+  EXPECT_NEAR(MovementPowerOf(fast, Thin(), energy).descent_w, 5e-4, 1e-9) << "but may take half a milliwatt";
 }
 
 // As printed it draws m g - rho/2 A C v^3: 1.816 * 9.8 - 0.0473558 v^3 W, nothing from 7.2167 m/s on.

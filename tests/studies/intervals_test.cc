@@ -34,6 +34,15 @@ TEST(RateIntervalTest, IsWilsons) {
   ExpectInterval(statistics::RateInterval(826, 850), 0.95833074, 0.98095370, 1e-8);
 }
 
+TEST(RateIntervalTest, EndsAtNothingAndAllExactlyAndNowhereElse) {
+  for (std::int64_t n = 2; n <= 300; ++n) {
+    EXPECT_EQ(statistics::RateInterval(0, n).lo, 0.0) << n;
+    EXPECT_EQ(statistics::RateInterval(n, n).hi, 1.0) << n;
+  }
+  EXPECT_NEAR(statistics::RateInterval(1, 10'000).lo, 1.76527e-5, 1e-9);
+  EXPECT_NEAR(statistics::RateInterval(9'999, 10'000).hi, 1 - 1.76527e-5, 1e-9);
+}
+
 TEST(RateIntervalTest, EndsExactlyAtZeroAndOne) {
   EXPECT_EQ(statistics::RateInterval(0, 850).lo, 0.0);
   EXPECT_NEAR(statistics::RateInterval(0, 850).hi, 0.00449903, 1e-8);
