@@ -59,7 +59,8 @@ py::dict Views(const schedule::FleetColumns& c, const py::handle& owner) {
     views[name] = View(values, 0, type, owner);
   };
   add("hovers", c.hovers, "?"), add("terminated", c.terminated, "?"), add("truncated", c.truncated, "?");
-  add("begun", c.begun, "?"), add("mission", c.mission, "i8"), add("timestep", c.timestep, "i8");
+  add("begun", c.begun, "?"), add("paid", c.paid, "?");
+  add("mission", c.mission, "i8"), add("timestep", c.timestep, "i8");
   add("outcome", c.outcome, "i8"), add("execution", c.execution, "i8"), add("reward", c.reward, "f8");
   add("scs", c.scs, "f8"), add("duration_s", c.duration_s, "f8"), add("movement_j", c.movement_j, "f8");
   add("sensing_j", c.sensing_j, "f8"), add("computation_j", c.computation_j, "f8");

@@ -46,6 +46,7 @@ FleetColumns::FleetColumns(std::size_t rows)
       terminated(rows),
       truncated(rows),
       begun(rows),
+      paid(rows),
       mission(rows, -1),
       timestep(rows),
       outcome(rows, -1),
@@ -63,8 +64,8 @@ void FleetColumns::CopyRow(const FleetColumns& other, std::size_t from, std::siz
   CopyValues(other.controller, from, controller, to, rfnn::kRcStates);
   CopyValues(other.robot, from, robot, to, rfnn::kRobotStates);
   CopyValues(other.ranges, from, ranges, to, 3);
-  for (auto column :
-       {&FleetColumns::hovers, &FleetColumns::terminated, &FleetColumns::truncated, &FleetColumns::begun})
+  for (auto column : {&FleetColumns::hovers, &FleetColumns::terminated, &FleetColumns::truncated,
+                      &FleetColumns::begun, &FleetColumns::paid})
     CopyValues(other.*column, from, this->*column, to);
   for (auto column :
        {&FleetColumns::mission, &FleetColumns::timestep, &FleetColumns::outcome, &FleetColumns::execution})
@@ -185,14 +186,17 @@ void Fleet::DetectRow(std::size_t row, agents::Execution execution) {
   ED3R_CHECK(r.moved, "detected before it moved");
   r.mission->Detect(execution);
   r.moved = false;
-  const mission::TimestepRecord& step = r.mission->LastStep();
   const std::optional<mission::Outcome> outcome = r.mission->Result();
+  const bool paid = outcome != mission::Outcome::kBatteryDepleted;
+  const mission::TimestepRecord& last = r.mission->LastStep();
+  const mission::TimestepRecord step = paid ? last : mission::TimestepRecord{};
   now_.begun[row] = 0;
-  now_.reward[row] = step.reward;
+  now_.paid[row] = paid;
+  now_.reward[row] = last.reward;
   now_.terminated[row] = outcome.has_value();
   now_.truncated[row] = r.mission->AtLimit();
   now_.outcome[row] = outcome ? static_cast<std::int64_t>(*outcome) : -1;
-  now_.execution[row] = step.execution;
+  now_.execution[row] = paid ? step.execution : -1;
   now_.scs[row] = step.scs;
   now_.duration_s[row] = mission::DurationS(step);
   now_.movement_j[row] = mission::MovementJ(step);
@@ -200,7 +204,7 @@ void Fleet::DetectRow(std::size_t row, agents::Execution execution) {
   now_.computation_j[row] = step.computation_j;
   now_.transmission_j[row] = step.transmission_j;
   now_.total_j[row] = step.total_j;
-  now_.battery_j[row] = step.battery_j;
+  now_.battery_j[row] = last.battery_j;
   r.over = now_.terminated[row] != 0 || now_.truncated[row] != 0;
   ShowController(row);
 }

@@ -40,6 +40,9 @@ struct FleetColumns {
   std::vector<double> reward;        // Eq. 21
   std::vector<std::uint8_t> terminated, truncated;
   std::vector<std::uint8_t> begun;  // the step began a mission and flew nothing (kNextStep)
+  // The timestep is in the mission's record: the battery paid it. What the last timestep of a depleted battery would have
+  // come to is not: execution, scs, times and energies are then as of no timestep, so that sums over steps are the record's.
+  std::vector<std::uint8_t> paid;
   // -1: no mission, none ended, none executed.
   std::vector<std::int64_t> mission, timestep, outcome, execution;
   std::vector<double> scs, duration_s, movement_j, sensing_j, computation_j, transmission_j, total_j,

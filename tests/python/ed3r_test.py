@@ -88,7 +88,7 @@ class PythonTest(unittest.TestCase):
             numbers = infos["mission"].copy()
             obs, rewards, terminated, _, infos = env.step(turning(obs, infos))
             ended = infos.get("_final_obs", np.zeros(num_envs, bool))
-            for row in np.flatnonzero(infos["_scs"] | ended):
+            for row in np.flatnonzero(infos["_outcome"] | ended):
                 end = infos["final_obs"][row] if ended[row] else obs[row]
                 found.setdefault(int(numbers[row]), []).append((end.tobytes(), rewards[row]))
                 if terminated[row]:
@@ -170,11 +170,47 @@ class PythonTest(unittest.TestCase):
         end, _, end_infos = self.fly_out(self.env(num_envs=1))
         self.assertTrue(infos["_final_obs"][0] and infos["_final_info"][0])
         np.testing.assert_array_equal(infos["final_obs"][0], end[0])
-        self.assertEqual(infos["final_info"]["total_j"][0], end_infos["total_j"][0])
+        self.assertEqual(infos["final_info"]["battery_j"][0], end_infos["battery_j"][0])
         self.assertFalse(infos["_total_j"][0])
         self.assertLess(rewards[0], 0)
         self.assertEqual((infos["mission"][0], infos["timestep"][0]), (1, 1))
         self.assertTrue((obs != end).any())
+
+    def sums(self, missions, env):
+        """What the infos of the first missions sum to, for each: timesteps, offloads, seconds, joules."""
+        obs, infos = env.reset()
+        sums, done = np.zeros((1000, 4)), set()
+        while not done.issuperset(range(missions)):
+            numbers = infos["mission"].copy()
+            obs, rewards, terminated, _, infos = env.step(turning(obs, infos))
+            for told in [infos] + ([infos["final_info"]] if "final_info" in infos else []):
+                costs = [told["_total_j"], told["execution"] == ed3r.OFFLOAD, told["duration_s"], told["total_j"]]
+                np.testing.assert_array_equal(np.stack(costs)[:, told["_outcome"] & ~told["_total_j"]], 0)
+                for info in ("scs", "execution", "movement_j"):
+                    np.testing.assert_array_equal(told["_" + info], told["_total_j"])
+                np.add.at(sums, numbers[told["_total_j"]], np.stack(costs, axis=1)[told["_total_j"]])
+            self.assertTrue((rewards[terminated] < 0).all())
+            done |= set(numbers[terminated].tolist())
+            if terminated.any() and env.metadata["autoreset_mode"] is ed3r.AutoresetMode.DISABLED:
+                obs, infos = env.reset(options={"reset_mask": terminated})
+        return sums[:missions]
+
+    def test_sums_of_infos_are_the_stored_missions(self):
+        settings = ["robot.battery_mah=300"]
+        stored = ed3r.fly(self.sweep, turning, self.root / "small battery", settings=settings).missions("mine")
+        self.assertIn("battery-depleted", [ed3r.Run.codes["outcome"][outcome] for outcome in stored["outcome"]])
+        expected = np.stack([stored[name] for name in ("timesteps", "offloads", "duration_s", "total_j")], axis=1)
+        for mode, copy in (("NextStep", True), ("SameStep", True), ("Disabled", True), ("NextStep", False)):
+            env = self.env(num_envs=3, autoreset_mode=mode, settings=settings, copy=copy)
+            np.testing.assert_allclose(self.sums(6, env), expected, rtol=1e-12, err_msg=mode)
+
+    def test_what_an_unpaid_timestep_leaves(self):
+        end, rewards, infos = self.fly_out(self.env(num_envs=1, settings=["robot.battery_mah=300"]))
+        self.assertEqual(ed3r.Run.codes["outcome"][infos["outcome"][0]], "battery-depleted")
+        self.assertTrue(infos["_outcome"][0] and infos["_battery_j"][0] and infos["_robot_obs"][0])
+        self.assertFalse(infos["_total_j"][0] or infos["_execution"][0])
+        self.assertLess(rewards[0], 0)
+        self.assertGreater(infos["battery_j"][0], 0)  # less than the timestep would have cost
 
     def test_views_are_the_engines_memory(self):
         env = self.env(num_envs=2, copy=False)

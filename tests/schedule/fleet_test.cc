@@ -133,6 +133,30 @@ TEST_F(FleetTest, SameStepShowsTheNextMissionAndKeepsTheEnd) {
   EXPECT_EQ(fleet->Now().timestep[0], 2);
 }
 
+TEST_F(FleetTest, StepsSumToTheRecordAlsoWhereTheBatteryCannotPay) {
+  config_.robot.battery_mah = 300;
+  const auto fleet = TwoRows(Autoreset::kDisabled);
+  std::optional<mission::MissionRecord> flown;
+  fleet->OnRecord([&](const mission::MissionTask& task, std::optional<mission::MissionRecord> record) {
+    if (task.mission == 0) flown = std::move(record);
+  });
+  double total_j = 0.0, duration_s = 0.0;
+  std::int64_t paid = 0;
+  while (!flown) {
+    Step(*fleet);
+    total_j += fleet->Now().total_j[0], duration_s += fleet->Now().duration_s[0];
+    paid += fleet->Now().paid[0];
+  }
+  ASSERT_EQ(flown->outcome, static_cast<std::int64_t>(mission::Outcome::kBatteryDepleted));
+  EXPECT_DOUBLE_EQ(total_j, flown->total_j);
+  EXPECT_DOUBLE_EQ(duration_s, flown->duration_s);
+  EXPECT_EQ(paid, flown->timesteps);
+  EXPECT_EQ(fleet->Now().paid[0], 0);
+  EXPECT_EQ(fleet->Now().execution[0], -1);
+  EXPECT_LT(fleet->Now().reward[0], 0.0);
+  EXPECT_DOUBLE_EQ(fleet->Now().battery_j[0], flown->battery_left_j);
+}
+
 TEST_F(FleetTest, DisabledWaitsForAReset) {
   const auto fleet = TwoRows(Autoreset::kDisabled);
   FlyOut(*fleet);

@@ -53,8 +53,12 @@ class VectorEnv:
 
     infos: arrays (N, ...), each with a mask "_name" of the rows that have it. Of the step: outcome (-1 until it ends;
     Run.codes["outcome"]), execution, scs, duration_s, movement_j (hovering included), sensing_j, computation_j,
-    transmission_j, total_j, battery_j, robot_obs. Of the mission under way: mission (its number), timestep (from 1),
-    hovers, ranges (N, 3: largest |dx|, |dy|, |dz| in m; largest |turn| in rad; width of the tilt interval in rad).
+    transmission_j, total_j, battery_j, robot_obs. The timestep that the battery cannot pay, with which a mission ends
+    battery-depleted, is no part of the stored mission: there the masks of execution, scs, duration_s and the energies are
+    False (values -1 and 0), so that sums over a mask are the stored mission's. outcome, robot_obs and battery_j (what the
+    battery still holds) hold; so do reward and terminated, which a learner needs, though the stored reward_sum leaves it out.
+    Of the mission under way: mission (its number), timestep (from 1), hovers, ranges (N, 3: largest |dx|, |dy|, |dz| in m;
+    largest |turn| in rad; width of the tilt interval in rad).
 
     Autoreset as Gymnasium defines it. NEXT_STEP: the step after the end begins the row's next mission and flies nothing
     (reward 0, the masks of its step are False). SAME_STEP: the step that ends a mission begins the next; its reward and

@@ -8,8 +8,9 @@ from ._spaces import AutoresetMode, Box, VectorEnvBase
 
 _ROWS_TOLD = 8
 # What a step came to: an info holds for the rows that flew in it.
-_STEP_INFOS = ("outcome", "execution", "scs", "duration_s", "movement_j", "sensing_j", "computation_j",
-               "transmission_j", "total_j", "battery_j")
+_STEP_INFOS = ("outcome", "battery_j")
+# What the mission's record has of it: an info holds where the battery paid the step too, so that sums are the stored ones.
+_PAID_INFOS = ("execution", "scs", "duration_s", "movement_j", "sensing_j", "computation_j", "transmission_j", "total_j")
 # What is known of the mission under way, before its next timestep.
 _MISSION_INFOS = ("mission", "timestep", "hovers", "ranges")
 
@@ -150,8 +151,7 @@ class VectorEnv(VectorEnvBase):
         if self._mode is AutoresetMode.SAME_STEP:
             ended = flew & (self._now["terminated"] | self._now["truncated"])
         # A row that began anew has flown nothing yet; its last step is in the final ones.
-        infos = self._step_infos({name: self._given(self._now[name]) for name in _STEP_INFOS}, flew & ~ended)
-        infos["robot_obs"], infos["_robot_obs"] = self._given(self._now["robot"]), flew & ~ended
+        infos = self._step_infos(self._now, flew & ~ended, self._given)
         for name in _MISSION_INFOS:
             infos[name], infos["_" + name] = self._given(self._now[name]), np.ones(self.num_envs, bool)
         if ended.any():
@@ -159,15 +159,16 @@ class VectorEnv(VectorEnvBase):
             infos["final_obs"], infos["_final_obs"] = np.full(self.num_envs, None, object), ended
             for row in np.flatnonzero(ended):
                 infos["final_obs"][row] = self._final["controller"][row].copy()
-            names = _STEP_INFOS + ("mission", "timestep")
-            final = self._step_infos({name: self._final[name].copy() for name in names}, ended)
-            final["robot_obs"], final["_robot_obs"] = self._final["robot"].copy(), ended
+            final = self._step_infos(self._final, ended, np.copy)
+            for name in ("mission", "timestep"):
+                final[name], final["_" + name] = self._final[name].copy(), ended
             infos["final_info"], infos["_final_info"] = final, ended
         return infos
 
     @staticmethod
-    def _step_infos(columns, flew):
-        infos = {}
-        for name, column in columns.items():
-            infos[name], infos["_" + name] = column, flew
+    def _step_infos(columns, flew, given):
+        infos = {"robot_obs": given(columns["robot"]), "_robot_obs": flew}
+        for names, holds in ((_STEP_INFOS, flew), (_PAID_INFOS, flew & columns["paid"])):
+            for name in names:
+                infos[name], infos["_" + name] = given(columns[name]), holds
         return infos
