@@ -45,13 +45,15 @@ constexpr std::uintmax_t kCheckedBytes = 50'000'000;
 
 struct Check {
   bool done = false;
+  bool possible = true;  // false: without checksums
   std::vector<store::DamagedMission> damage;
 };
 
 Check CheckOf(store::ResultReader& reader) {
+  if (!reader.Tables().checked()) return {false, false, {}};
   if (std::filesystem::file_size(std::filesystem::path(reader.dir()) / store::kResultsFile) > kCheckedBytes)
     return {};
-  return {true, reader.FindDamage()};
+  return {true, true, reader.FindDamage()};
 }
 
 void PrintStatusJson(store::ResultReader& reader, const Check& check) {
@@ -80,7 +82,9 @@ void PrintStatus(store::ResultReader& reader, const Check& check) {
           "status {} --stage "
           "{}' tells\n",
           stage.name, reader.dir(), stage.name);
-  if (!check.done)
+  if (!check.possible)
+    fmt::print("{}\n", store::kNothingToCompare);
+  else if (!check.done)
     fmt::print("not compared with its checksums, as it is larger than {} MB: 'ed3r verify {}' does\n",
                kCheckedBytes / 1'000'000, reader.dir());
   if (!check.damage.empty())
@@ -236,6 +240,7 @@ Command AddDigest(Program& program) {
             else
               fmt::print("{}\n", digest);
             FlushOutput();
+            if (!reader.Tables().checked()) Tell("note: {}", store::kNothingToCompare);
             if (missions < planned)
               Tell("note: this is the digest of {} of {} planned missions", missions, planned);
             return kDone;

@@ -27,6 +27,9 @@ Verification Verify(const std::string& dir) {
   try {
     store::ResultReader reader(dir);
     found.missions = reader.CountMissions();
+    if (!reader.Tables().checked())
+      found.other.push_back(
+          fmt::format("{}: {}, {}", dir, Counted(found.missions, "mission"), store::kNothingToCompare));
     found.damage = reader.FindDamage();
     reader.Files();
     schedule::NetworkShelf::From(reader.Networks(), dir);
@@ -108,7 +111,8 @@ Command AddVerify(Program& program) {
   auto options = std::make_shared<Options>();
   CommandLine parser = program.AddCommand(
       "verify",
-      "Compares everything stored with its checksums and names what is damaged; exit 1 where anything is");
+      "Compares everything stored with its checksums and names what is damaged; exit 1 where anything is, or "
+      "has no checksums");
   parser.Option("DIR", options->dir, "Run directory").Required();
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] { return PrintVerification(options->dir, Verify(options->dir), options->json); }};

@@ -24,8 +24,7 @@ std::vector<sweep::KeptTimesteps> KeptIn(Connection& database) {
 }  // namespace
 
 RecordTables::RecordTables(Connection& database)
-    : checked_(database.Int("SELECT count(*) FROM pragma_table_info('missions') WHERE name = 'checksum'") >
-               0),
+    : checked_(database.Int("PRAGMA user_version") >= kChecksumsSince),
       kept_(KeptIn(database)),
       missions_(ColumnsIn(database, "missions")),
       timesteps_(ColumnsIn(database, "timesteps")) {

@@ -16,6 +16,13 @@
 
 namespace ed3r::store {
 
+// The format whose missions have them. What a file says of itself decides, not what columns are in it: those that it should
+// have are looked for (shape.h).
+inline constexpr int kChecksumsSince = 2;
+
+// Of a file of before: half a sentence for those who read it.
+inline constexpr char kNothingToCompare[] = "without checksums (format 1): nothing of it can be compared";
+
 struct Checksums {
   std::string mission, steps;
   bool operator==(const Checksums&) const = default;

@@ -68,7 +68,7 @@ class Target {
  private:
   // Where both files' checksums are over the same, one is known by the other.
   bool HasColumnsOf(const RecordTables& tables) const {
-    return tables.checked() && tables.missions().names() == writer_.Tables().missions().names() &&
+    return tables.missions().names() == writer_.Tables().missions().names() &&
            tables.timesteps().names() == writer_.Tables().timesteps().names();
   }
 
@@ -133,6 +133,10 @@ class Target {
 };
 
 void CheckSameRecipe(const ResultReader& first, const ResultReader& other) {
+  // What is merged is given checksums, as if it had been compared with some.
+  if (!other.Tables().checked())
+    throw UserError(fmt::format("{}: {}: it can be read, but not merged; fly it again into another --out",
+                                other.dir(), kNothingToCompare));
   const std::vector<RunLayout::Stage>& stages = other.Layout().stages;
   for (std::size_t s = 0; s < stages.size(); ++s)
     if (!other.Tables().complete() &&

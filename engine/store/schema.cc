@@ -1,7 +1,6 @@
 #include "engine/store/schema.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cstdint>
@@ -16,6 +15,7 @@
 #include "engine/store/columns.h"
 #include "engine/store/records.h"
 #include "engine/store/seals.h"
+#include "engine/store/shape.h"
 #include "engine/store/words.h"
 
 namespace ed3r::store {
@@ -120,44 +120,6 @@ std::string NetworkFilesChecksum(Connection& database) {
   return HashOfRows(database, "SELECT sha256, name, checksum FROM networks ORDER BY sha256");
 }
 
-// A view may compute without end and a trigger may change what is written: whoever gives a file away decides what they do.
-void RefuseForeignSchema(Connection& database) {
-  Statement select(
-      database,
-      "SELECT type, name FROM sqlite_schema WHERE type = 'trigger' OR (rootpage = 0 AND lower(name) IN ("
-      "'recipe', 'code', 'inputs', 'places', 'files', 'stages', 'runs', 'networks', 'flown_networks', "
-      "'sessions', 'session_notes', 'failures', 'timings', 'missions', 'timesteps', 'finished', 'worlds'))");
-  if (select.Step())
-    throw UserError(fmt::format("{}: an ed3r file that somebody has changed: '{}' is a {}, where ed3r has {}",
-                                database.file(), select.Text(1), select.Text(0),
-                                select.Text(0) == "trigger" ? "none" : "a table"));
-}
-
-// Without its key a table holds rows twice, and joins of it count them so.
-void CheckKeys(Connection& database, int version) {
-  struct Table {
-    const char* name;
-    std::vector<std::string> key;
-    int since;
-  };
-  const std::vector<std::string> mission = {"run", "mission"};
-  for (const auto& [name, key, since] :
-       {Table{"missions", mission, 1}, Table{"timesteps", {"run", "mission", "k"}, 1},
-        Table{"timings", mission, 1}, Table{"failures", mission, 1}, Table{"networks", {"sha256"}, 2},
-        Table{"flown_networks", {"run", "seed", "agent"}, 2}, Table{"sessions", {"session"}, 1}}) {
-    if (version < since) continue;
-    Statement columns(database,
-                      fmt::format("SELECT name FROM pragma_table_info('{}') WHERE pk > 0 ORDER BY pk", name));
-    std::vector<std::string> found;
-    while (columns.Step()) found.push_back(columns.Text(0));
-    if (found != key)
-      throw UserError(fmt::format(
-          "{}: an ed3r file that somebody has changed: its table {} has lost its key ({}); fly it again into "
-          "another --out",
-          database.file(), name, fmt::join(key, ", ")));
-  }
-}
-
 std::optional<std::string> RecipeValue(Connection& database, std::string_view key) {
   Statement select(database, "SELECT value FROM recipe WHERE key = ?");
   select.Bind(0, key);
@@ -203,10 +165,9 @@ FileKind CheckFile(Connection& database, FileUse use) {
   if (version < 1)
     throw UserError(fmt::format("{}: written by an older ed3r (format {}, this one reads 1 and up)",
                                 database.file(), version));
-  RefuseForeignSchema(database);
-  CheckKeys(database, static_cast<int>(version));
+  CheckShape(database, static_cast<int>(version));
   const RecordTables tables(database);
-  if (version >= 2) CheckSeals(database);
+  if (version >= kChecksumsSince) CheckSeals(database);
   if (use == FileUse::kWrite && (version < kSchemaVersion || !tables.complete()))
     throw UserError(
         fmt::format("{}: written by an older ed3r (code {}): it can be read, but not continued; give "

@@ -22,7 +22,7 @@
 // files of before have none.
 //
 // Formats: 1 had no checksums, code, files and networks; its recipe had one code_version and its inputs were called
-// worlds. It is read, but not continued. Within a format, columns may be added to missions and timesteps: a file that
+// worlds. It is read, but neither continued nor merged, and its readers say that nothing of it can be compared. Within a format, columns may be added to missions and timesteps: a file that
 // lacks one is read with the field's initial value in its place. failures got its kind and missions their seal within
 // format 2, too.
 #pragma once

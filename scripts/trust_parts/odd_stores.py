@@ -76,6 +76,8 @@ NAMED = {
     "a trigger that writes": "CREATE TRIGGER t AFTER INSERT ON missions BEGIN UPDATE missions SET total_j = 0; END",
     "a table less": "DROP TABLE timesteps",
     "seals that are gone": "DROP VIEW named_missions; ALTER TABLE missions DROP COLUMN seal",
+    "checksums that are gone": "DROP VIEW named_missions; ALTER TABLE missions DROP COLUMN checksum; UPDATE missions SET total_j = total_j / 2",
+    "checksums of networks that are gone": "ALTER TABLE networks DROP COLUMN checksum",
     "a column less": "DROP VIEW named_missions; ALTER TABLE missions DROP COLUMN site",
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "engine/store/checksums.h"
 #include "studies/paper/claims.h"
 #include "studies/report/page_parts.h"
 #include "studies/report/page_style.h"
@@ -59,7 +60,10 @@ std::string WhatWasRun(const Provenance& p) {
                                   HtmlText(p.commit.empty() ? "unknown" : p.commit), Code(p.code_version),
                                   p.mixed_code ? "; <b>mixed: several versions flew this run</b>" : "")) +
          Fact("time by phase", HtmlText(p.time_by_phase)) + Fact("machine", machine) +
-         Fact("when", HtmlText(when)) + Fact("digest of the results", Code(p.digest)) + "</dl></section>\n";
+         Fact("when", HtmlText(when)) +
+         Fact("digest of the results",
+              Code(p.digest) + (p.unchecked ? fmt::format("; <b>{}</b>", store::kNothingToCompare) : "")) +
+         "</dl></section>\n";
 }
 
 std::string TableCell(const metrics::ArmMetrics& arm, std::size_t metric) {

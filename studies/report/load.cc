@@ -60,6 +60,7 @@ RunResults LoadRun(const std::string& dir) {
   RunResults results{layout.name, {}};
   if (store::MixedCode(reader.StoredRecipe().code))
     results.mixed_code = store::CodeText(reader.StoredRecipe().code);
+  results.unchecked = !reader.Tables().checked();
   const std::vector<store::ArmStatus> status = reader.Status();
   const std::vector<figures::ArmPlan> plans = figures::ReadArmPlans(reader.StoredRecipe().plan_text);
   for (int s = 0; s < static_cast<int>(layout.stages.size()); ++s) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/core/check.h"
+#include "engine/store/checksums.h"
 #include "engine/store/reader.h"
 #include "engine/sweep/arm_id.h"
 #include "studies/claims/construction.h"
@@ -153,6 +154,7 @@ Json RunJson(const PageDataInputs& inputs) {
   json["dir"] = p.dir;
   json["planned"] = p.planned;
   json["mixed_code"] = p.mixed_code;
+  json["unchecked"] = p.unchecked ? store::kNothingToCompare : "";
   json["report_command"] = inputs.report_command;
   json["figures_note"] = inputs.figures_note;
   if (!p.sessions.empty()) {

@@ -58,6 +58,7 @@ Provenance ReadProvenance(const std::string& dir, const std::string& digest) {
   provenance.seed = std::to_string(reader.Layout().seed);
   provenance.code_version = store::CodeText(reader.StoredRecipe().code);
   provenance.mixed_code = store::MixedCode(reader.StoredRecipe().code);
+  provenance.unchecked = !reader.Tables().checked();
   provenance.inputs = reader.StoredRecipe().inputs;
   const std::vector<store::Session> all = reader.Sessions();
   const bool any_flew = std::any_of(all.begin(), all.end(), Flew);

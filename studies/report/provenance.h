@@ -15,6 +15,7 @@ struct Provenance {
   std::string seed;
   std::string code_version;   // identity of the code that decided results, by subsystem
   bool mixed_code = false;    // several versions of one subsystem flew
+  bool unchecked = false;     // its missions have no checksums (format 1)
   std::string time_by_phase;  // of the last session that was flown with --profile; "" where none
   std::string commit;         // of the last of `sessions`; "unknown" outside a checkout
   std::string digest;         // of what is stored

@@ -8,6 +8,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/store/checksums.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/paper/arms.h"
 #include "studies/paper/claims.h"
@@ -116,6 +117,7 @@ Report MakeReport(const RunResults& results, const RunDepartures& departures, Ju
   Report report;
   report.name = results.name;
   report.mixed_code = results.mixed_code;
+  report.unchecked = results.unchecked;
   report.departures = departures;
   report.judging = judging;
   report.variants = variants::CompareVariants(
@@ -164,6 +166,7 @@ std::string Paragraphs(const std::vector<std::string>& notes) {
 std::string ReportText(const Report& report) {
   std::string text = report.name;
   if (!report.mixed_code.empty()) text += fmt::format(", MIXED CODE (--accept-mixed): {}", report.mixed_code);
+  if (report.unchecked) text += fmt::format(", {}", store::kNothingToCompare);
   if (report.arms.empty()) return text + "\n\nNo missions.\n";
   if (report.claims.networks > 1)
     text += fmt::format(", {} trained networks of each kind", report.claims.networks);
@@ -191,6 +194,7 @@ std::string ReportText(const Report& report) {
 nlohmann::ordered_json ReportJson(const Report& report) {
   nlohmann::ordered_json json = {{"name", report.name}};
   if (!report.mixed_code.empty()) json["mixed_code"] = report.mixed_code;
+  if (report.unchecked) json["unchecked"] = store::kNothingToCompare;
   const auto departures = report.departures.find(report.variant);
   json["paper"] = DeparturesJson(departures == report.departures.end() ? Departures() : departures->second,
                                  report.judging);

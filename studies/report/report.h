@@ -25,11 +25,13 @@ struct RunResults {
   std::vector<metrics::ArmData> arms;
   // The identities of the code, where several versions of it flew the run (CodeText); "" where one did.
   std::string mixed_code = {};
+  bool unchecked = false;  // its missions have no checksums (format 1)
 };
 
 struct Report {
   std::string name;
   std::string mixed_code;  // as in RunResults
+  bool unchecked = false;  // likewise
   RunDepartures departures;
   Judging judging = Judging::kWhatThePaperFlew;
   std::vector<metrics::ArmMetrics> arms;

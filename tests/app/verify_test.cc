@@ -52,6 +52,42 @@ TEST_F(VerifyTest, AWholeRunIsCalledWhole) {
   EXPECT_EQ(Ed3r("verify " + (scratch_ / "none").string()).status, 2);
 }
 
+TEST_F(VerifyTest, ARunWhoseChecksumsAreGoneIsNotWhole) {
+  Sql(Run(), "DROP VIEW named_missions");
+  Sql(Run(), "ALTER TABLE missions DROP COLUMN checksum");
+  Sql(Run(), "UPDATE missions SET total_j = total_j / 2");
+  const std::string dir = Run().string(), gone = "its table missions has no column checksum";
+  const CommandResult verified = Ed3r("verify " + dir);
+  EXPECT_EQ(verified.status, 1);
+  EXPECT_TRUE(Contains(verified.out, gone)) << verified.out;
+  for (const std::string& command : {"digest " + dir, "report --no-figures " + dir, "status " + dir,
+                                     "merge " + (scratch_ / "merged").string() + " " + dir, FlyRbs(Run())}) {
+    const CommandResult refused = Ed3r(command);
+    EXPECT_EQ(refused.status, 2) << command;
+    EXPECT_TRUE(Contains(refused.err, gone)) << command << ": " << refused.err;
+  }
+}
+
+TEST_F(VerifyTest, AFileOfFormat1IsToldToHaveNoChecksums) {
+  const fs::path old = scratch_ / "old";
+  fs::create_directories(old);
+  fs::copy_file(ED3R_SOURCE_DIR "/tests/store/data/format1.sqlite", old / "results.sqlite");
+  const std::string dir = old.string(), said = "without checksums (format 1): nothing of it can be compared";
+  const CommandResult verified = Ed3r("verify " + dir);
+  EXPECT_EQ(verified.status, 1);
+  EXPECT_EQ(verified.out, dir + ": 3 missions, " + said + "\n");
+  EXPECT_FALSE(json::parse(Ed3r("verify --json " + dir).out)["whole"]);
+  EXPECT_TRUE(Contains(Ed3r("status " + dir).out, said));
+  EXPECT_FALSE(json::parse(Ed3r("status --json " + dir).out)["checked"]);
+  EXPECT_EQ(Ed3r("digest " + dir).err, "note: " + said + "\n");
+  const CommandResult reported = Ed3r("report --no-figures --no-missions " + dir);
+  EXPECT_EQ(reported.status, 0) << reported.err;
+  EXPECT_TRUE(Contains(reported.out, said));
+  const CommandResult merged = Ed3r("merge " + (scratch_ / "merged").string() + " " + dir);
+  EXPECT_EQ(merged.status, 2);
+  EXPECT_TRUE(Contains(merged.err, said)) << merged.err;
+}
+
 TEST_F(VerifyTest, EveryCommandRefusesADamagedMissionAndARepairFliesItAgain) {
   Sql(Run(), "UPDATE timesteps SET scs = scs + 1e-9 WHERE mission = 2 AND k = 1");
   const std::string dir = Run().string();

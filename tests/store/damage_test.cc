@@ -105,6 +105,51 @@ TEST(DamageTest, ATableThatHasLostItsKey) {
   }
 }
 
+// Without the column of checksums nothing would be compared, and 'verify' would call halved numbers whole.
+TEST(DamageTest, AColumnThatIsNotThere) {
+  const TempDir temp;
+  WriteStore(temp / "run", {{0, 0, 0}, {2, 1, 3}});
+  Connection database(ResultsIn(temp / "run"), Connection::Access::kReadOnly);
+  std::vector<std::string> of_records = {"kind", "seal"};  // may not be there (schema.h)
+  for (const Column& column : ColumnsOf<mission::MissionRecord>()) of_records.push_back(column.name);
+  for (const Column& column : ColumnsOf<mission::TimestepRecord>()) of_records.push_back(column.name);
+  Statement tables(database, "SELECT name FROM sqlite_schema WHERE type = 'table'");
+  int columns_tried = 0;
+  while (tables.Step()) {
+    const std::string table = tables.Text(0);
+    Statement columns(database, fmt::format("SELECT name FROM pragma_table_info('{}') WHERE pk = 0", table));
+    while (columns.Step()) {
+      const std::string column = columns.Text(0);
+      const bool of_record = (table == "missions" || table == "timesteps" || column == "kind") &&
+                             std::count(of_records.begin(), of_records.end(), column) > 0;
+      if (of_record) continue;
+      SCOPED_TRACE(table + '.' + column);
+      const TempDir other;
+      fs::copy(temp / "run", other / "run");
+      Sql(ResultsIn(other / "run"),
+          fmt::format("DROP VIEW named_missions; DROP VIEW named_timesteps; ALTER TABLE {} DROP COLUMN {}",
+                      table, column));
+      ExpectRefused(other / "run", fmt::format("its table {} has no column {}", table, column));
+      ++columns_tried;
+    }
+  }
+  EXPECT_EQ(columns_tried, 27);
+}
+
+TEST(DamageTest, AColumnOfAnotherTypeOrThatComputes) {
+  const TempDir temp;
+  for (const char* name : {"type", "computed"}) WriteStore(temp / name, {{0, 0, 0}});
+  Sql(ResultsIn(temp / "type"),
+      "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = replace(sql, 'total_j REAL', 'total_j "
+      "TEXT') "
+      "WHERE name = 'missions'");
+  ExpectRefused(temp / "type", "its table missions has a column total_j of type 'TEXT', not REAL");
+  Sql(ResultsIn(temp / "computed"),
+      "DROP VIEW named_missions; ALTER TABLE missions DROP COLUMN checksum; "
+      "ALTER TABLE missions ADD COLUMN checksum TEXT AS ('')");
+  ExpectRefused(temp / "computed", "its table missions has no column checksum");
+}
+
 TEST(DamageTest, ADirectoryThatCannotBeMade) {
   const TempDir temp;
   std::ofstream(temp / "file") << "text";

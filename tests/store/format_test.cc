@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include "engine/store/checksums.h"
+#include "engine/store/merge.h"
 #include "tests/store/store_fixture.h"
 
 namespace ed3r::store {
@@ -63,6 +64,26 @@ TEST(FormatTest, Format1IsReadWithTheDigestOfItsTime) {
       UserErrorOf([&] { ResultStore::Open(dir, TestRecipe(), TestLayout()); }),
       "written by an older ed3r (code sources ba3183604684cabe): it can be read, but not continued"));
   EXPECT_EQ(fs::file_size(ResultsIn(dir)), size);
+}
+
+// A copy of it would have checksums, over whatever had become of its numbers.
+TEST(FormatTest, Format1HasNoChecksumsAndIsNotMerged) {
+  const TempDir temp;
+  const std::string dir = Sample(temp, 1);
+  EXPECT_FALSE(ResultReader(dir).Tables().checked());
+  EXPECT_TRUE(Contains(
+      UserErrorOf([&] { MergeStores(temp / "merged", {dir}); }),
+      "without checksums (format 1): nothing of it can be compared: it can be read, but not merged"));
+  EXPECT_FALSE(fs::exists(temp / "merged"));
+  EXPECT_TRUE(ResultReader(Sample(temp, 2)).Tables().checked());
+}
+
+TEST(FormatTest, AFileThatOnlySaysThatItIsOfFormat1IsRefused) {
+  const TempDir temp;
+  WriteStore(temp / "run", {{0, 0, 0}});
+  Sql(ResultsIn(temp / "run"), "PRAGMA user_version = 1");
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader reader(temp / "run"); }),
+                       "it says that it is of format 1, which has none"));
 }
 
 TEST(FormatTest, Format2IsReadWithTheDigestOfItsTime) {

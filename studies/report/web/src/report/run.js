@@ -47,7 +47,10 @@ export function whatWasRun(model) {
           .join(", "),
       ),
       fact("when", run.begun && `${run.begun} to ${run.ended || "now"}`),
-      fact("digest of the results", el("code", {}, run.digest)),
+      fact("digest of the results", [
+        el("code", {}, run.digest),
+        run.unchecked && el("b", {}, `; ${run.unchecked}`),
+      ]),
       fact("this page", el("code", {}, run.report_command)),
     ),
   );
