@@ -9,7 +9,6 @@
 
 #include "engine/app/commands.h"
 #include "engine/app/failure_text.h"
-#include "engine/app/gathered_shards.h"
 #include "engine/app/report_missions.h"
 #include "engine/app/stage_state.h"
 #include "engine/app/status_of_shards.h"
@@ -17,6 +16,7 @@
 #include "engine/app/words.h"
 #include "engine/core/file.h"
 #include "engine/store/digest.h"
+#include "engine/store/gathered_shards.h"
 #include "engine/store/merge.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
@@ -151,7 +151,7 @@ std::string NamesOfSeveralStages(const report::RunResults& results) {
 }
 
 int MakeReportOf(const ReportOptions& options) {
-  const GatheredShards run(options.dir);
+  const store::GatheredShards run(options.dir);
   store::ResultReader reader(run.dir());
   std::future<std::string> digest = report::CheckWhole(run.dir());
   const report::RunResults results = report::LoadRun(run.dir());
@@ -183,6 +183,7 @@ int MakeReportOf(const ReportOptions& options) {
     fmt::print("{}\n{}: index.html, report.txt, report.json, metrics.csv, {} tables, {} figures\n",
                report::ReportText(report), folder.out, report.tables.size(), written.figures);
   FlushOutput();
+  TellNotes(run.notes());
   for (const std::string& note :
        {NamesOfSeveralStages(results), written.note, written.page_note, watched.note})
     if (!note.empty()) Tell("note: {}", note);
@@ -229,7 +230,7 @@ Command AddDigest(Program& program) {
       "Shards in DIR count, merged or not. Where missions of the plan are not stored, a note says how many.");
   const auto options = AddDirOptions(parser);
   return {parser, [options] {
-            const GatheredShards run(options->dir);
+            const store::GatheredShards run(options->dir);
             store::ResultReader reader(run.dir());
             const std::string digest = store::DigestOf(reader);
             const std::int64_t missions = reader.CountMissions(), planned = reader.Layout().Missions();
@@ -241,6 +242,7 @@ Command AddDigest(Program& program) {
               fmt::print("{}\n", digest);
             FlushOutput();
             if (!reader.Tables().checked()) Tell("note: {}", store::kNothingToCompare);
+            TellNotes(run.notes());
             if (missions < planned)
               Tell("note: this is the digest of {} of {} planned missions", missions, planned);
             return kDone;

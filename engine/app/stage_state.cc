@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "engine/app/commands.h"
-#include "engine/app/gathered_shards.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/schedule/progress_of_stage.h"
+#include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
 #include "engine/sweep/plan_text.h"
 #include "studies/report/load.h"
@@ -72,14 +73,15 @@ int Tell(const sweep::SweepPlan& plan, const sweep::Stage& stage, const store::R
 }  // namespace
 
 int TellStage(const std::string& dir, const std::string& name) {
-  std::vector<std::string> stores = StoresThatAdd(dir);
-  if (stores.empty()) stores = {dir};
+  store::AddingStores found = store::StoresThatAdd(dir);
+  TellNotes(found.notes);
+  const std::vector<std::string> stores = found.dirs.empty() ? std::vector{dir} : std::move(found.dirs);
   const store::ResultReader first(stores.front());
   const sweep::SweepPlan plan =
       sweep::PlanOf(sweep::ReadPlanText(first.StoredRecipe().plan_text), stores.front());
   const sweep::Stage& stage = FindStage(plan, dir, name);
   if (!stage.precision || stores.size() == 1) return Tell(plan, stage, first, stores);
-  const GatheredShards gathered(dir);
+  const store::GatheredShards gathered(dir);
   return Tell(plan, stage, first, {gathered.dir()});
 }
 

@@ -66,7 +66,7 @@ Found Look(const std::string& dir) {
       if (!tally) {
         const store::ResultReader reader(store);
         found.name = reader.Layout().name;
-        tally.emplace(reader.Layout());
+        tally.emplace(reader.StoredRecipe(), reader.Layout());
       }
       tally->Add(store);
       const double pace = store::MissionsPerSecond(store, kStill_s);

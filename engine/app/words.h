@@ -35,6 +35,10 @@ void Tell(fmt::format_string<Values...> format, Values&&... values) {
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
+inline void TellNotes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) Tell("note: {}", note);
+}
+
 // What was printed goes out before what the other stream says. Where it cannot, the end of the program tells why.
 void FlushOutput();
 

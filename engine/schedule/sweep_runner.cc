@@ -21,6 +21,8 @@
 #include "engine/schedule/input_files.h"
 #include "engine/schedule/progress_of_stage.h"
 #include "engine/schedule/recorder.h"
+#include "engine/store/growth.h"
+#include "engine/store/part_of_run.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
 #include "engine/store/store.h"
@@ -145,6 +147,7 @@ class SweepRun {
 
  private:
   void RunStages() {
+    CheckFoundation();
     if (options_.only_failed) again_ = store_->Failed();
     for (std::size_t i = 0; i < plan_.stages.size() && !summary_.flown.interrupted; ++i) {
       if (!options_.stage.empty() && plan_.stages[i].name != options_.stage) continue;
@@ -176,14 +179,36 @@ class SweepRun {
     return options_.foundation.empty() ? options_.dir : options_.foundation;
   }
 
+  bool HasFoundation() const {
+    return !options_.foundation.empty() &&
+           std::filesystem::exists(std::filesystem::path(options_.foundation) / store::kResultsFile);
+  }
+
+  // A part that builds on nothing is merged into it later: it may be of a plan that the foundation's grows into then.
+  void CheckFoundation() const {
+    if (!HasFoundation()) return;
+    store::ResultReader reader(options_.foundation);
+    const store::Recipe& there = reader.StoredRecipe();
+    store::Recipe here = RecipeOf(plan_, inputs_, options_);
+    if (there.plan_text == here.plan_text) return RefuseOther(DifferenceOfRun(reader));
+    const store::Growth growth = store::GrowthOf(there, here, store::StagesWithNetworks(reader));
+    if (!growth.Allowed()) RefuseOther(growth.difference);
+    std::erase_if(here.code, [&](const auto& entry) { return !there.code.contains(entry.first); });
+    if (!options_.accept_mixed) RefuseOther(store::CodeDifference(there.code, here.code));
+  }
+
+  void RefuseOther(const std::optional<std::string>& difference) const {
+    if (difference)
+      throw UserError(fmt::format("{}: holds results of another recipe: {}; give another --from",
+                                  options_.foundation, *difference));
+  }
+
   // What is stored where the stages before are.
   std::vector<sweep::RunId> Foundation() const {
     if (options_.foundation.empty()) return store_->Stored();
-    if (!std::filesystem::exists(std::filesystem::path(options_.foundation) / store::kResultsFile)) return {};
+    if (!HasFoundation()) return {};
     store::ResultReader reader(options_.foundation);
-    if (const auto difference = DifferenceOfRun(reader))
-      throw UserError(fmt::format("{}: holds results of another recipe: {}; give another --from",
-                                  options_.foundation, *difference));
+    RefuseOther(DifferenceOfRun(reader));
     return reader.Stored();
   }
 

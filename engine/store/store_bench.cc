@@ -148,7 +148,7 @@ void Read(const std::string& dir, double rows) {
   const auto done = reader.Status().front().done;
   fmt::print("status, compared   {:8.1f} ms ({} done)\n", 1e3 * status.Seconds(), done);
   const Stopwatch tally;
-  Tally counted(reader.Layout());
+  Tally counted(reader.StoredRecipe(), reader.Layout());
   counted.Add(dir);
   fmt::print("status, counted    {:8.1f} ms ({} done)\n", 1e3 * tally.Seconds(), counted.Arms().front().done);
 }
@@ -187,7 +187,7 @@ void Merge(const std::string& dir, const RunLayout& layout, int missions, int ti
   fmt::print("peak memory        {:8.0f} MB before, {:.0f} MB after\n", before_mb, PeakMemory_mb());
   timed("merged again");
   const Stopwatch tally;
-  Tally all(layout);
+  Tally all({}, layout);
   for (const std::string& store : dirs) all.Add(store);
   fmt::print("tally of shards    {:8.1f} ms ({} done)\n", 1e3 * tally.Seconds(), all.Arms().front().done);
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "engine/core/check.h"
+#include "engine/store/part_of_run.h"
 #include "engine/store/records.h"
 #include "engine/store/schema.h"
 #include "engine/store/sqlite.h"
@@ -31,7 +32,7 @@ double QuietFor_s(const std::string& dir) {
 
 }  // namespace
 
-Tally::Tally(const RunLayout& layout) : layout_(layout) {
+Tally::Tally(const Recipe& recipe, const RunLayout& layout) : recipe_(recipe), layout_(layout) {
   for (const RunLayout::Stage& stage : layout.stages)
     for (std::size_t arm = 0; arm < stage.arms.size(); ++arm)
       done_.emplace_back(static_cast<std::size_t>(stage.missions));
@@ -39,15 +40,28 @@ Tally::Tally(const RunLayout& layout) : layout_(layout) {
 }
 
 void Tally::Add(const std::string& dir) {
-  if (!ResultReader(dir).Layout().SameMissions(layout_))
-    throw UserError(fmt::format("{}: holds results of other stages, arms or seed", dir));
+  ResultReader reader(dir);
+  const PartOfRun part = FindPlan(recipe_, layout_, reader);
+  if (!part.Counts())
+    throw UserError(fmt::format("{}: holds results of {}: {}", dir,
+                                part.plan == PartPlan::kGrown
+                                    ? "a plan that has grown, which 'ed3r merge' takes in"
+                                    : "another recipe",
+                                part.what));
   Connection database(FileIn(dir), Connection::Access::kReadOnly);
   const Transaction moment(database, Transaction::Kind::kRead);
-  Mark(database, "missions", done_);
-  Mark(database, "failures", failed_);
+  Mark(database, reader.Layout(), "missions", done_);
+  Mark(database, reader.Layout(), "failures", failed_);
 }
 
-void Tally::Mark(Connection& database, const char* table, std::vector<std::vector<bool>>& marks) const {
+void Tally::Mark(Connection& database, const RunLayout& of, const char* table,
+                 std::vector<std::vector<bool>>& marks) const {
+  std::vector<std::int64_t> runs;  // here, by the store's numbers
+  for (std::size_t s = 0; s < of.stages.size(); ++s)
+    for (std::size_t a = 0; a < of.stages[s].arms.size(); ++a) {
+      const auto here = SameMission(of, {static_cast<int>(s), static_cast<int>(a), 0}, layout_);
+      runs.push_back(here ? layout_.RunIndex(here->stage, here->arm) : -1);
+    }
   // Along the small index where the file has it (schema.h).
   const bool indexed =
       std::string_view(table) == "missions" &&
@@ -56,11 +70,11 @@ void Tally::Mark(Connection& database, const char* table, std::vector<std::vecto
                                          indexed ? fmt::format(" INDEXED BY {}", kMissionsIndex) : ""));
   while (select.Step()) {
     const std::int64_t run = select.Int(0), mission = select.Int(1);
-    if (run < 0 || run >= std::ssize(marks) || mission < 0 ||
-        mission >= std::ssize(marks[static_cast<std::size_t>(run)]))
-      throw UserError(DamageText(database.file(), {run, mission, layout_.DescribeKeys(run, mission),
-                                                   "the plan has no such mission"}));
-    marks[static_cast<std::size_t>(run)][static_cast<std::size_t>(mission)] = true;
+    const std::int64_t here = run < 0 || run >= std::ssize(runs) ? -1 : runs[static_cast<std::size_t>(run)];
+    if (here < 0 || !of.Place(run, mission))
+      throw UserError(DamageText(
+          database.file(), {run, mission, of.DescribeKeys(run, mission), "the plan has no such mission"}));
+    marks[static_cast<std::size_t>(here)][static_cast<std::size_t>(mission)] = true;
   }
 }
 

@@ -8,22 +8,27 @@
 
 #include "engine/store/layout.h"
 #include "engine/store/reader.h"
+#include "engine/store/recipe.h"
 
 namespace ed3r::store {
 
 class Tally {
  public:
-  explicit Tally(const RunLayout& layout);
+  Tally(const Recipe& recipe, const RunLayout& layout);
 
-  // UserError when it is not a store of this layout, or names a mission that is not in the plan.
+  // UserError when it is of another plan or other code (part_of_run.h), or names a mission that is not in its plan. The
+  // missions of a plan that the tally's has grown from are counted as what they are in this one.
   void Add(const std::string& dir);
 
   // Without times, which are of records. A mission that failed in one store and is done in another is done.
   std::vector<ArmStatus> Arms() const;
 
  private:
-  void Mark(Connection& database, const char* table, std::vector<std::vector<bool>>& marks) const;
+  // `of`: the layout of the store.
+  void Mark(Connection& database, const RunLayout& of, const char* table,
+            std::vector<std::vector<bool>>& marks) const;
 
+  Recipe recipe_;
   RunLayout layout_;
   std::vector<std::vector<bool>> done_, failed_;  // by run, then mission
 };

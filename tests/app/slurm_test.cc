@@ -196,6 +196,67 @@ TEST_F(PiecesTest, APlanTellsHowFarShardsEndApart) {
   EXPECT_FALSE(nlohmann::json::parse(Ed3r("plan --json " + sweep).out)["stages"][0].contains("shards"));
 }
 
+// A run that is complete, beside parts of a plan that has grown since.
+TEST_F(PiecesTest, PartsOfAGrownPlanAreNotLeftOutInSilence) {
+  const std::string sweep = Write("name: grows\nmissions: 4\nset: {strategy: rbs, " + kWorld + "}");
+  const std::string more = sweep + " --missions 6";
+  ExpectDone(Ed3r(fmt::format("run {} --quiet --out {}", sweep, Run())));
+  for (const char* shard : {"1/2", "2/2"}) ExpectDone(Piece(more, "online", shard));
+  const std::string note = "2 shards of a plan that has grown not counted (stage online: 6 missions per arm ";
+  const std::string report = "report --no-figures --no-missions --out " + (scratch_ / "report").string();
+  for (const std::string& command : {std::string("digest"), std::string("status --stage online"), report}) {
+    const CommandResult result = Ed3r(command + " " + Run());
+    ExpectDone(result);
+    EXPECT_TRUE(Says(result.err, note)) << command << ": " << result.err;
+    EXPECT_TRUE(Says(result.err, fmt::format("'ed3r merge {0} {0}/shards/online/*/'", Run()))) << result.err;
+  }
+  const CommandResult status = Ed3r("status " + Run());
+  EXPECT_EQ(status.status, 1);
+  EXPECT_TRUE(Says(status.out, "which 'ed3r merge' takes in")) << status.out;
+
+  // After the run has grown those of before have nothing to add.
+  Merge("online");
+  ExpectDone(Ed3r(
+      fmt::format("run {} --stage online --shard 1/3 --quiet --out {}/shards/online/old", sweep, Run())));
+  const CommandResult whole = Ed3r("digest " + Run());
+  EXPECT_EQ(whole.err, "");
+  ExpectDone(Ed3r(fmt::format("run {} --quiet --out {}", more, (scratch_ / "fresh").string())));
+  EXPECT_EQ(whole.out, Ed3r("digest " + (scratch_ / "fresh").string()).out);
+  const CommandResult tally = Ed3r("status --json " + Run());
+  ExpectDone(tally);
+  EXPECT_EQ(nlohmann::json::parse(tally.out)["arms"][0]["done"], 6);
+}
+
+TEST_F(PiecesTest, PartsOfAnotherPlanAreToldOrRefused) {
+  const std::string sweep = Write("name: other\nmissions: 4\nset: {strategy: rbs, " + kWorld + "}");
+  const std::string windy = sweep + " --set environment.wind_x_mps=5";
+  ExpectDone(Ed3r(fmt::format("run {} --quiet --out {}", sweep, Run())));
+  const CommandResult from = Piece(windy, "online", "1/2");
+  EXPECT_EQ(from.status, 2);
+  EXPECT_TRUE(Says(from.err, "environment.wind_x_mps is 0 there and 5 here; give another --from"))
+      << from.err;
+  EXPECT_FALSE(fs::exists(Run() + "/shards")) << "what is refused leaves nothing";
+
+  const auto shard = [&](const std::string& of, const std::string& run, const char* part) {
+    ExpectDone(Ed3r(fmt::format("run {} --stage online --shard {}/2 --quiet --out {}/shards/online/{}", of,
+                                part, run, part)));
+  };
+  shard(windy, Run(), "1");
+  for (const char* command : {"digest ", "status --stage online "}) {
+    const CommandResult result = Ed3r(command + Run());
+    ExpectDone(result);
+    EXPECT_TRUE(Says(result.err, "1 shard of another plan not counted (")) << result.err;
+    EXPECT_TRUE(Says(result.err, "environment.wind_x_mps is 0 there and 5 here")) << result.err;
+  }
+  const std::string mixed = (scratch_ / "mixed").string();
+  shard(sweep, mixed, "1");
+  shard(windy, mixed, "2");
+  const CommandResult status = Ed3r("status " + mixed);
+  EXPECT_EQ(status.status, 1);
+  EXPECT_TRUE(Says(status.out, "environment.wind_x_mps is 0 there and 5 here")) << status.out;
+  EXPECT_EQ(Ed3r("digest " + mixed).status, 2);
+}
+
 TEST_F(PiecesTest, WhatCannotBeIsRefused) {
   const std::string sweep = Write(kStages);
   const auto refusal = [&](const std::string& command) {

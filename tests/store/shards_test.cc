@@ -51,7 +51,7 @@ TEST(TallyTest, CountsEachMissionOnceOverAllStores) {
     store->PutFailure({2, 0, 5}, {"bad-input", "done elsewhere"});
     store->Commit();
   }
-  Tally tally(TestLayout());
+  Tally tally(TestRecipe(), TestLayout());
   for (const int shard : {0, 1, 2}) tally.Add(dirs[static_cast<std::size_t>(shard)]);
   tally.Add(dirs[0]);
   tally.Add(temp / "extra");
@@ -66,7 +66,7 @@ TEST(TallyTest, CountsEachMissionOnceOverAllStores) {
   // Missions 1 and 45 in plan order: of them shard 1 holds both.
   EXPECT_EQ(failed, 0);
 
-  Tally failures(TestLayout());
+  Tally failures(TestRecipe(), TestLayout());
   failures.Add(temp / "extra");
   EXPECT_EQ(failures.Arms()[0].failed, 1);
   EXPECT_EQ(failures.Arms()[0].done, 0);
@@ -77,8 +77,21 @@ TEST(TallyTest, AnotherLayoutIsRefused) {
   WriteStore(temp / "run", AllMissions(TestLayout()));
   RunLayout other = TestLayout();
   other.stages[0].missions = 41;
-  Tally tally(other);
-  EXPECT_TRUE(Contains(UserErrorOf([&] { tally.Add(temp / "run"); }), "other stages, arms or seed"));
+  Tally tally(TestRecipe(), other);
+  EXPECT_TRUE(Contains(UserErrorOf([&] { tally.Add(temp / "run"); }), "its stages, arms or seed differ"));
+}
+
+TEST(TallyTest, AnotherRecipeOrCodeIsRefused) {
+  const TempDir temp;
+  Recipe windy = TestRecipe(), coded = TestRecipe();
+  windy.inputs["worlds/ridges.yaml"] = "fingerprint-2";
+  coded.code["flight"] = {"beef"};
+  WriteStore(temp / "windy", {{0, 0, 1}}, windy);
+  WriteStore(temp / "coded", {{0, 0, 2}}, coded);
+  Tally tally(TestRecipe(), TestLayout());
+  EXPECT_TRUE(Contains(UserErrorOf([&] { tally.Add(temp / "windy"); }), "fingerprint-1 there and "));
+  EXPECT_TRUE(Contains(UserErrorOf([&] { tally.Add(temp / "coded"); }), "code of flight"));
+  EXPECT_EQ(tally.Arms()[0].done, 0);
 }
 
 TEST(MergeShardsTest, MoreStoresThanAreReadAtOnceInAnyOrder) {
