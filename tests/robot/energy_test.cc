@@ -155,6 +155,9 @@ TEST(EnergyTest, MomentumTheoryIsBilledAtAirspeeds) {
   EXPECT_NEAR(MovementPowerOf(Heavy(), windy, energy, {0, 1}).horizontal_w, power_w(std::sqrt(64.0 + 9.0), 0),
               1e-9);
   EXPECT_TRUE(BillsWind(windy, energy));
+  EnvironmentConfig east = Thin(), south = Thin();
+  east.wind_x_mps = 3.0, south.wind_y_mps = -4.0;
+  EXPECT_TRUE(BillsWind(east, energy) && BillsWind(south, energy));
   EXPECT_FALSE(BillsWind(Thin(), energy));
   energy.model = PowerModel::kPaper;  // of still air
   EXPECT_FALSE(BillsWind(windy, energy));
