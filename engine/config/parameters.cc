@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <type_traits>
@@ -96,7 +97,7 @@ std::vector<ParameterInfo> ListParameters() {
   ForEachField(defaults, [&](const std::string& key, const auto& field, const FieldInfo& info) {
     list.push_back({key, std::string(info.unit), ToText(field), Allowed<std::decay_t<decltype(field)>>(info),
                     std::string(info.source), std::string(info.meaning), info.scope, info.is_file,
-                    std::string(info.or_else)});
+                    std::string(info.or_else), info.min, info.max});
   });
   return list;
 }
@@ -115,6 +116,14 @@ const std::vector<std::string>& ParameterKeys() {
     return result;
   }();
   return keys;
+}
+
+const ParameterInfo& ParameterOf(std::string_view key) {
+  const std::vector<ParameterInfo>& all = Parameters();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const ParameterInfo& info) { return info.key == key; });
+  ED3R_CHECK(found != all.end(), std::string(key));
+  return *found;
 }
 
 std::string SetParameter(Config& config, std::string_view key, std::string_view value, Scope scope) {

@@ -2,6 +2,7 @@
 // Keys are "subject.field", e.g. robot.mass_kg. Thread-safe: nothing is shared.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,11 +21,16 @@ struct ParameterInfo {
   Scope scope = Scope::kMission;
   bool is_file = false;  // a world, a detector, a network
   std::string or_else;   // the word that stands for none in a file's place; "" where none does
+  double min =
+      -std::numeric_limits<double>::infinity();  // what a number may be; infinite where nothing binds it
+  double max = std::numeric_limits<double>::infinity();
 };
 
 // Every parameter, in the order of the structs.
 const std::vector<ParameterInfo>& Parameters();
 const std::vector<std::string>& ParameterKeys();
+// Throws InternalError for an unknown key.
+const ParameterInfo& ParameterOf(std::string_view key);
 
 // Why a value was refused: a clause that starts with the key and holds the value, the allowed range and, for
 // an unknown key, the nearest known one. The caller puts file:line:column in front. Sets `key` from text.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "engine/config/parameters.h"
 #include "engine/robot/power/power_models.h"
 
 namespace ed3r::fit {
@@ -80,21 +81,25 @@ class FormulaModel final : public EnergyModel {
   Airframe airframe_;
 };
 
+// A fit may not find what a sweep may not set: unit and bounds are those of the key.
+ParameterSpec Fitted(const std::string& name, const std::string& key, double start) {
+  const ParameterInfo& info = ParameterOf(key);
+  return {name, key, info.unit, info.min, info.max, start};
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<EnergyModel>> MakeEnergyModels(const RobotConfig& robot, double gravity_mps2) {
   const Airframe airframe{robot::MakeRotorcraft(robot), gravity_mps2};
-  // The drag coefficients' bounds are those of their configuration keys.
-  const ParameterSpec paper_efficiency{"efficiency", "energy.paper_efficiency", "", 0.05, 1.0, 0.6};
-  const ParameterSpec c_dh{"C_dh", "robot.drag_horizontal", "", 0.0, 5.0, 0.55};
-  const ParameterSpec c_dv{"C_dv", "robot.drag_vertical", "", 0.0, 5.0, 0.35};
-  const std::vector<ParameterSpec> isolated = {
-      {"efficiency", "energy.momentum_efficiency", "", 0.2, 1.0, 0.7},
-      {"induced_factor", "energy.induced_factor", "", 1.0, 2.0, 1.15},
-      {"profile_share", "energy.profile_share", "", 0.0, 2.0, 0.3},
-      {"drag_area", "energy.drag_area_m2", "m^2", 0.0, 0.5, 0.03}};
+  const ParameterSpec paper_efficiency = Fitted("efficiency", "energy.paper_efficiency", 0.6);
+  const ParameterSpec c_dh = Fitted("C_dh", "robot.drag_horizontal", 0.55);
+  const ParameterSpec c_dv = Fitted("C_dv", "robot.drag_vertical", 0.35);
+  const std::vector<ParameterSpec> isolated = {Fitted("efficiency", "energy.momentum_efficiency", 0.7),
+                                               Fitted("induced_factor", "energy.induced_factor", 1.15),
+                                               Fitted("profile_share", "energy.profile_share", 0.3),
+                                               Fitted("drag_area", "energy.drag_area_m2", 0.03)};
   std::vector<ParameterSpec> interfering = isolated;
-  interfering.push_back({"interference", "energy.interference", "", 0.0, 2.0, 0.5});
+  interfering.push_back(Fitted("interference", "energy.interference", 0.5));
 
   using Printed = FormulaModel<PaperFormula<VerticalForm::kPrinted>>;
   using Climb = FormulaModel<PaperFormula<VerticalForm::kClimb>>;

@@ -13,10 +13,10 @@ namespace ed3r::fit {
 
 struct ParameterSpec {
   std::string name;
-  std::string key;   // configuration key that takes the value
-  std::string unit;  // "" for none
-  double lower, upper;
-  double start;  // a plausible value; other starts are spread over the bounds
+  std::string key;      // configuration key that takes the value
+  std::string unit;     // "" for none
+  double lower, upper;  // those of the key
+  double start;         // a plausible value; other starts are spread over the bounds
 };
 
 // Immutable; thread-safe.

@@ -1,10 +1,12 @@
 // The estimation against logs whose parameters are known.
 #include "studies/fit/estimate.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "engine/config/parameters.h"
 #include "engine/core/check.h"
 #include "studies/fit/assessment.h"
 #include "studies/fit/self_check.h"
@@ -57,6 +59,16 @@ TEST_F(EstimateTest, DerivativesAgreeWithDifferences) {
       }
     }
   }
+}
+
+TEST_F(EstimateTest, WhatAFitMayFindASweepMaySet) {
+  for (const auto& model : models_)
+    for (const ParameterSpec& spec : model->parameters()) {
+      Config config;
+      for (const double value : {spec.lower, spec.start, spec.upper})
+        EXPECT_EQ(SetParameter(config, spec.key, fmt::format("{}", value)), "") << model->name();
+      EXPECT_LT(spec.lower, spec.upper) << spec.key;
+    }
 }
 
 TEST_F(EstimateTest, RecoversEveryModelFromNoiseAndOutliersWithinOnePercent) {
