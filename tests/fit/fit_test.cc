@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "studies/fit/fit_text.h"
 
 namespace ed3r::fit {
@@ -112,6 +113,16 @@ TEST_F(M100Test, JsonAndParameterFileSayTheSame) {
       << "a lower bound that the data hold on to";
   EXPECT_FALSE(yaml["robot"]["drag_vertical"]) << "an upper bound is no value";
   EXPECT_FALSE(Model("momentum-isolated").determination.Usable()) << "no efficiency is high enough";
+}
+
+TEST_F(M100Test, TheShippedAirframeIsWhatAFitWrites) {
+  std::string written = FittedYaml(*report_);
+  const std::string source =
+      std::string(ED3R_SOURCE_DIR) + "/";  // the command is given from the source folder
+  if (const std::size_t at = written.find(source); at != std::string::npos) written.erase(at, source.size());
+  EXPECT_EQ(written, ReadFile(kFlights + "m100_fitted.yaml"))
+      << "ed3r fit sweeps/data/flight/m100_flights.csv --out DIR; cp DIR/fitted.yaml "
+         "sweeps/data/flight/m100_fitted.yaml";
 }
 
 TEST_F(M100Test, WritesItsOutputs) {
