@@ -12,6 +12,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/utf8.h"
+#include "studies/fit/ground_check.h"
 #include "studies/fit/unit_check.h"
 
 namespace ed3r::fit {
@@ -386,6 +387,7 @@ FlightLog MakeFlightLog(const std::vector<flight_logs::LogTable>& tables, const 
     for (const std::string& note : tables[t].notes())
       if (std::find(log.notes.begin(), log.notes.end(), note) == log.notes.end()) log.notes.push_back(note);
   }
+  CheckGround(tables, log);
   CheckPowerInFlight(tables, log);
   CheckEnough(tables, log, use);
   NoteDeadSpeed(log);

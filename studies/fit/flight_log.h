@@ -62,7 +62,7 @@ enum class LogUse { kFit, kEvaluate };
 
 // Logs as one. Throws UserError naming file, line and column: a column that is missing, text in a number, values out of
 // range, time that does not increase (with skip_bad such rows are left out and counted), units that cannot be
-// (unit_check.h), flights that are not contiguous, power that was not measured, too few rows, no hovering.
+// (unit_check.h), flights that are not contiguous, rows on the ground that the format does not leave out (ground_check.h), power that was not measured, too few rows, no hovering.
 FlightLog MakeFlightLog(const std::vector<flight_logs::LogTable>& tables, const LogFormat& format,
                         LogUse use = LogUse::kFit, const flight_logs::LogReading& reading = {});
 

@@ -269,6 +269,41 @@ TEST_F(RefusalsTest, RowsInFlightAreToldByWords) {
   EXPECT_EQ(Fit(LogText(), FormatText({}, "in_flight: {state: In Air}\n")).log.rows_on_ground, 30);
 }
 
+// Armed and waiting for the first minute: 120 of 600 rows.
+void Idles(Row& row) {
+  if (row.index >= 120) return;
+  row.power = fmt::format("{:.3f}", 6.0 + 0.2 * std::sin(1.7 * row.index));
+  row.speed = row.climb = row.altitude = "0";
+  row.state = "Landed";
+}
+
+TEST_F(RefusalsTest, RowsOnTheGroundThatNobodyLeftOutAreNamed) {
+  const std::string log = LogText(Idles);
+  EXPECT_EQ(Says(log),
+            "log.csv:2:1: 120 of 600 rows look like the ground: they rest for 5 s and more on less than "
+            "79.4 W, a quarter of what this log takes in flight; say which rows are in flight: put "
+            "'in_flight: {h: 1}', or the words of a state, into the format file (sweeps/OWN_DATA.md, "
+            "\"A drone's log\")");
+  EXPECT_EQ(Fit(log, FormatText({}, "in_flight: {h: 1}\n")).log.rows_on_ground, 120);
+  EXPECT_EQ(Fit(log, FormatText({}, "in_flight: {state: In Air}\n")).log.rows_on_ground, 120);
+  const std::string no_altitude =
+      "columns: {time_s: t, power_w: p, airspeed_mps: v, climb_mps: w}\n"
+      "robot: {mass_kg: 2, propellers: 4, propeller_radius_m: 0.12}\n";
+  Expect(Says(log, no_altitude), {"120 of 600 rows look like the ground", "'in_flight: {COLUMN: [WORD]}'"});
+}
+
+TEST_F(RefusalsTest, WhatOnlyResemblesTheGroundIsFitted) {
+  // Drop-outs of a sensor come on the move, too; a short rest is nothing that a robust fit minds.
+  const std::string moving = LogText([](Row& row) {
+    if (row.index < 120 && row.index % 15 < 4) row.power = "6";
+  });
+  EXPECT_EQ(Fit(moving).log.drop_outs, 32);
+  const std::string shortly = LogText([](Row& row) {
+    if (row.index < 10) row.power = "6";
+  });
+  EXPECT_EQ(Fit(shortly).log.drop_outs, 10);
+}
+
 TEST_F(RefusalsTest, WhatTheDataDoNotDetermineIsNotWritten) {
   // Hovering alone says nothing of drag, climbing or interference.
   const std::string hover = LogText([](Row& row) {
