@@ -12,7 +12,7 @@ void ApplySettings(const std::vector<std::string>& settings, Scope scope, Config
     const auto equals = setting.find('=');
     if (equals == std::string::npos || equals == 0)
       throw UserError(fmt::format("--set {}: expected KEY=VALUE, e.g. robot.mass_kg=2.1", setting));
-    if (setting.substr(0, equals) == "robot") {
+    if (setting.substr(0, equals) == sweep::kAirframeKey) {
       for (const sweep::Setting& part :
            sweep::ReadAirframeFile(setting.substr(equals + 1), "--set " + setting))
         if (const std::string problem = SetParameter(config, part.key, part.text, scope); !problem.empty())

@@ -66,6 +66,11 @@ Axis ReadGrid(const YamlEntry& entry, const SettingReader& reader) {
   // The key comes first: for a misspelt one, no form of the value is right.
   const auto& keys = ParameterKeys();
   const std::string key = FullKey(entry.key);
+  if (key == kAirframeKey)
+    FailAt(
+        entry.at,
+        "robot: is no axis: an airframe file sets many parameters; allowed: points of a list (list: [{name: "
+        "mine, robot: FILE}, ...]), or one of its parameters (robot.mass_kg: [1.4, 1.8])");
   if (std::find(keys.begin(), keys.end(), key) == keys.end()) reader.Read(entry.key, entry.at, "", entry.at);
   for (const WrittenValue& value : ReadValues(entry.value, key))
     axis.points.push_back({"", {reader.Read(entry.key, entry.at, value.text, value.at)}, value.at});

@@ -12,8 +12,6 @@
 namespace ed3r::sweep {
 namespace {
 
-constexpr std::string_view kAirframeKey = "robot";
-
 // Null for what is no file, and for an unknown key.
 const ParameterInfo* FindFileKey(std::string_view key) {
   const std::vector<ParameterInfo>& all = Parameters();

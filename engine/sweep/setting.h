@@ -26,6 +26,9 @@ struct Setting {
   bool is_default = false;
 };
 
+// `robot: FILE` includes an airframe file; it is no parameter.
+inline constexpr std::string_view kAirframeKey = "robot";
+
 // `strategy` is short for mission.strategy; all other keys are written in full.
 std::string FullKey(std::string_view written);
 

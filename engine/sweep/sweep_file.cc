@@ -19,7 +19,7 @@ std::vector<Setting> ReadOverrides(const std::vector<std::string>& written, cons
     const std::string at = "--set " + text;
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) FailAt(at, "is not allowed; allowed: KEY=VALUE");
-    if (text.substr(0, equals) == "robot") {
+    if (text.substr(0, equals) == kAirframeKey) {
       // An airframe file; a later or earlier --set of one of its keys is a duplicate like any other.
       for (Setting& setting : ReadAirframeFile(text.substr(equals + 1), at)) {
         if (!places.emplace(setting.key, at).second) FailAt(at, fmt::format("{}: is set twice", setting.key));

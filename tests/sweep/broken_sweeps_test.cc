@@ -15,6 +15,10 @@ struct Broken {
 };
 
 constexpr Broken kBroken[] = {
+    {"airframe_axis.yaml",
+     "airframe_axis.yaml:4:3: robot: is no axis: an airframe file sets many parameters; allowed: points of a "
+     "list (list: "
+     "[{name: mine, robot: FILE}, ...]), or one of its parameters (robot.mass_kg: [1.4, 1.8])"},
     {"axis_value_is_map.yaml",
      "axis_value_is_map.yaml:4:26: agents.eta_min: a map is not allowed; allowed: one value"},
     {"axis_value_out_of_range.yaml",
