@@ -84,6 +84,7 @@ class StageExpander {
  private:
   void CheckOffAxes(const std::vector<Setting>& fixed, const std::vector<Setting>& overrides) const {
     for (const Setting& setting : overrides) {
+      if (!setting.airframe_at.empty()) CheckOffAirframes(setting);
       if (setting.is_default) continue;
       if (const Setting* axis = FindOnAxes(axes_, setting.key))
         FailAt(setting.at,
@@ -95,6 +96,17 @@ class StageExpander {
         FailAt(setting.at, fmt::format("{}: '{}' is not allowed here: the sweep varies it, at {}",
                                        setting.key, setting.canonical, axis->at));
     }
+  }
+
+  // Single parameters of an airframe file may be varied; where points name whole files, another one for all would be lost.
+  void CheckOffAirframes(const Setting& forced) const {
+    for (const Axis& axis : axes_)
+      for (const AxisPoint& point : axis.points)
+        for (const Setting& setting : point.settings)
+          if (setting.key == forced.key && !setting.airframe_at.empty())
+            FailAt(forced.airframe_at,
+                   fmt::format("robot: is not allowed here: the sweep varies it, at {}; write the file there",
+                               setting.airframe_at));
   }
 
   // The first axis is the slowest, as nested loops in the order written.

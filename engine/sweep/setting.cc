@@ -95,6 +95,7 @@ std::vector<Setting> ReadAirframeFile(const std::string& path, const std::string
                                       .ReadMap(ReadYamlFile(path).root, "an airframe file");
   for (Setting& setting : settings) {
     setting.is_default = true;
+    setting.airframe_at = at;
     const std::string subject = setting.key.substr(0, setting.key.find('.'));
     if (subject != "robot" && subject != "energy" && subject != "environment" && subject != "cpu")
       FailAt(setting.at,

@@ -24,6 +24,7 @@ struct Setting {
   // An axis may vary it, as nobody wrote it beside that axis: of an airframe file, a base file, the level above. Points of the
   // axis that do not name the key keep it.
   bool is_default = false;
+  std::string airframe_at = {};  // of an airframe file: where that was named
 };
 
 // `robot: FILE` includes an airframe file; it is no parameter.

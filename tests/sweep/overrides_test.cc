@@ -79,6 +79,24 @@ TEST(OverridesTest, MayNotSetWhatAnAxisVaries) {
       "--set strategy=ed3r: mission.strategy: is not allowed here: the sweep varies it, at x.yaml:5:20");
 }
 
+// It would be lost in these points, without a word.
+TEST(OverridesTest, AnAirframeFileMayNotStandInForThoseOfPoints) {
+  const ScratchFolder scratch;
+  scratch.Write("light.yaml", "robot: {mass_kg: 1.2}\n");
+  scratch.Write("heavy.yaml", "robot: {mass_kg: 3}\n");
+  const std::string study = scratch.Write("x.yaml",
+                                          "name: x\nmissions: 1\nsweep:\n  list: [{name: a}, {name: b, "
+                                          "robot.mass_kg: 2}, {name: c, robot: heavy.yaml}]\n");
+  const std::string set = "robot=" + scratch.Path() + "/light.yaml";
+  try {
+    LoadSweep(study, Set({set}));
+    FAIL() << "accepted";
+  } catch (const UserError& error) {
+    EXPECT_EQ(error.what(), "--set " + set + ": robot: is not allowed here: the sweep varies it, at " +
+                                study + ":4:67; write the file there");
+  }
+}
+
 TEST(OverridesTest, LaterLayersCheckWhatTheyKnow) {
   const ScratchFolder scratch;
   const ValueCheck check = [](const std::string& key, const std::string& value) {
