@@ -5,15 +5,19 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "engine/app/commands.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
+#include "engine/core/csv_table.h"
 #include "engine/core/file.h"
+#include "engine/core/parse_number.h"
 #include "engine/rfnn/model_file.h"
 #include "engine/rfnn/onnx_network.h"
 #include "engine/store/reader.h"
+#include "engine/sweep/plan_text.h"
 #include "studies/export/export_tables.h"
 
 namespace ed3r::app {
@@ -49,6 +53,32 @@ std::map<std::string, std::string> FileNames(const store::FlownNetworks& flown) 
   return names;
 }
 
+// The seed that an arm's network number `use.seed` was trained with; "" in plans of before there was one.
+std::string TrainingSeed(const sweep::WrittenPlan::Arm& arm, const store::NetworkUse& use) {
+  const auto first = arm.settings.find("training.seed");
+  const std::optional<std::int64_t> seed =
+      first == arm.settings.end() ? std::nullopt : ParseNumber<std::int64_t>(first->second);
+  return seed ? std::to_string(*seed + use.seed) : "";
+}
+
+// Networks of one name part by their hash alone: a row for each arm that flew one says which it is. `network` is the column of
+// that name in missions.csv.
+void WriteNetworkIndex(store::ResultReader& reader, const store::FlownNetworks& flown,
+                       const std::map<std::string, std::string>& names, const std::filesystem::path& path) {
+  const sweep::WrittenPlan plan = sweep::ReadPlanText(reader.StoredRecipe().plan_text);
+  std::string csv = "file,agent,training_seed,stage,arm,network,sha256\n";
+  for (const store::NetworkUse& use : flown.uses) {
+    const sweep::WrittenPlan::Stage& stage = plan.stages.at(static_cast<std::size_t>(use.stage));
+    const sweep::WrittenPlan::Arm& arm = stage.arms.at(static_cast<std::size_t>(use.arm));
+    csv +=
+        fmt::format("{},{},{},{},{},{},{}\n", CsvField(names.at(use.sha256)), use.agent,
+                    TrainingSeed(arm, use), CsvField(stage.name), CsvField(arm.name), use.seed, use.sha256);
+  }
+  WriteFile(path, csv);
+  fmt::print("{}: {}: which arm flew which of them\n", path.string(),
+             Counted(static_cast<std::int64_t>(flown.uses.size()), "row"));
+}
+
 void ExportNetworks(store::ResultReader& reader, const std::filesystem::path& folder) {
   const store::FlownNetworks flown = reader.Networks();
   if (flown.files.empty())
@@ -66,6 +96,7 @@ void ExportNetworks(store::ResultReader& reader, const std::filesystem::path& fo
     WriteFile(path, rfnn::OnnxBytes(model));
     fmt::print("{}: {}\n", path.string(), file.name);
   }
+  WriteNetworkIndex(reader, flown, names, folder / "networks.csv");
 }
 
 int Export(const Options& options) {
@@ -93,8 +124,10 @@ Command AddExport(Program& program) {
   parser.Option("DIR", options->dir, "Run directory").Required();
   parser.Flag("--csv", options->csv, "missions.csv and timesteps.csv");
   parser.Flag("--numpy", options->numpy, "missions.npy and timesteps.npy: structured arrays");
-  parser.Flag("--networks", options->networks,
-              "The networks that flew, for networks.rc and networks.robot of another sweep");
+  parser.Flag(
+      "--networks", options->networks,
+      "The networks that flew, for networks.rc and networks.robot of another sweep, and networks.csv: "
+      "which arm flew which");
   parser.Option("--out", options->out, "Folder to write to; default DIR/export").Path();
   parser.Footer(
       "Columns have their units in their names; stage, arm, outcome, motion_rule and execution are words. "

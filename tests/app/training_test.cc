@@ -2,11 +2,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
+#include "engine/core/csv_table.h"
 #include "tests/app/command.h"
 
 namespace ed3r::app {
@@ -139,11 +142,32 @@ TEST(TrainingTest, NetworksOfOneNameAreExportedIntoFilesOfTheirOwn) {
   const CommandResult flown =
       Ed3r(fmt::format("run {} --quiet --out {} --cache {}", sweep, run, (scratch / "cache").string()));
   ASSERT_EQ(flown.status, 0) << flown.err;
-  ASSERT_EQ(Ed3r(fmt::format("export {} --networks --out {}", run, (scratch / "out").string())).status, 0);
-  std::set<std::string> contents;
+  const CommandResult exported =
+      Ed3r(fmt::format("export {} --networks --out {}", run, (scratch / "out").string()));
+  ASSERT_EQ(exported.status, 0) << exported.err;
+  std::map<std::string, std::string> contents;
   for (const auto& file : std::filesystem::directory_iterator(scratch / "out"))
-    contents.insert(ReadAll(file.path()));
+    if (file.path().extension() == ".onnx")
+      contents.emplace(ReadAll(file.path()), file.path().filename().string());
   EXPECT_EQ(contents.size(), 2u);
+
+  // Which is which.
+  const std::string index = (scratch / "out" / "networks.csv").string();
+  EXPECT_NE(exported.out.find(index + ": 2 rows"), std::string::npos) << exported.out;
+  const CsvTable table = CsvTable::Read(index);
+  ASSERT_EQ(table.rows(), 2u);
+  std::set<std::string> files, arms;
+  for (std::size_t row = 0; row < 2; ++row) {
+    const auto cell = [&](std::string_view column) { return table.Text(row, table.Column(column, "")); };
+    files.insert(cell("file"));
+    arms.insert(cell("arm"));
+    EXPECT_NE(cell("file").find(cell("sha256").substr(0, 12)), std::string::npos);
+    EXPECT_EQ(cell("stage") + " " + cell("agent"), "online rc");
+    EXPECT_EQ(cell("training_seed") + " " + cell("network"), "1 0");
+    EXPECT_EQ(std::filesystem::exists(scratch / "out" / cell("file")), true);
+  }
+  EXPECT_EQ(files.size(), 2u);
+  EXPECT_EQ(arms, (std::set<std::string>{"short", "long"}));
 }
 
 TEST(TrainingTest, AWarmUpThatIsTooShortForItsNetworksIsRefused) {
