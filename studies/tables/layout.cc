@@ -7,6 +7,11 @@
 #include <sstream>
 
 namespace ed3r::tables {
+namespace {
+
+constexpr int kGap = 2;
+
+}  // namespace
 
 int DisplayWidth(std::string_view utf8) {
   // Every byte but the continuation bytes (10xxxxxx) starts a character.
@@ -17,6 +22,15 @@ std::string Pad(std::string_view text, int width, Align align) {
   const int space = std::max(0, width - DisplayWidth(text));
   const int left = align == Align::kLeft ? 0 : align == Align::kRight ? space : space / 2;
   return std::string(left, ' ') + std::string(text) + std::string(space - left, ' ');
+}
+
+TextColumn::TextColumn(std::span<const std::string> texts, int least) : width_(least) {
+  for (const std::string& text : texts)
+    width_ = std::max(width_, std::min(DisplayWidth(text) + kGap, kWidestColumn));
+}
+
+std::string TextColumn::operator()(std::string_view text) const {
+  return Pad(std::string(text) + std::string(kGap, ' '), width_, Align::kLeft);
 }
 
 std::string Rule(int count) {

@@ -2,6 +2,7 @@
 // use is one cell wide).
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,18 @@ enum class Align { kLeft, kRight, kCentre };
 
 // `text` padded with spaces to `width`; longer text is left as it is.
 std::string Pad(std::string_view text, int width, Align align);
+
+// A left-aligned column in which texts do not run into the next one: as wide as the longest and two spaces, at least `least`, at
+// most kWidestColumn; a text that is longer pushes its own line aside.
+class TextColumn {
+ public:
+  static constexpr int kWidestColumn = 60;
+  TextColumn(std::span<const std::string> texts, int least);
+  std::string operator()(std::string_view text) const;
+
+ private:
+  int width_;
+};
 
 // `count` times the character "─".
 std::string Rule(int count);

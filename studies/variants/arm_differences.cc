@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view kReferenceArm = "rbs";
 constexpr std::size_t kMetrics = std::size(kComparedMetrics);
-constexpr int kArmWidth = 20, kPairsWidth = 7, kCellWidth = 31;
+constexpr int kLeastArmWidth = 20, kPairsWidth = 7, kCellWidth = 31;
 
 // What the other arms of its stage are compared with; null where none has flown.
 const metrics::ArmData* ReferenceOf(std::span<const metrics::ArmData> arms, const std::string& stage,
@@ -47,13 +47,16 @@ void Correct(std::vector<ArmDifference>& differences) {
 std::string StageTable(std::span<const ArmDifference> differences, std::size_t& first) {
   const std::string &stage = differences[first].stage, &minus = differences[first].minus;
   std::string text = fmt::format("{}: arms minus '{}', paired by scenario\n", stage, minus);
-  text += tables::Pad("arm", kArmWidth, tables::Align::kLeft) +
-          tables::Pad("pairs", kPairsWidth, tables::Align::kRight);
+  std::vector<std::string> names;
+  for (const ArmDifference& difference : differences) names.push_back(difference.arm);
+  const tables::TextColumn arm(names, kLeastArmWidth);
+  std::string heading = arm("arm") + tables::Pad("pairs", kPairsWidth, tables::Align::kRight);
   for (const char* metric : kComparedMetrics)
-    text += tables::Pad(DifferenceHeading(metric), kCellWidth, tables::Align::kRight);
-  text += fmt::format("\n{}\n", tables::Rule(tables::kTerminalWidth));
+    heading += tables::Pad(DifferenceHeading(metric), kCellWidth, tables::Align::kRight);
+  text += fmt::format("{}\n{}\n", heading,
+                      tables::Rule(std::max(tables::kTerminalWidth, tables::DisplayWidth(heading))));
   for (; first < differences.size() && differences[first].stage == stage; first += kMetrics) {
-    text += tables::Pad(differences[first].arm, kArmWidth, tables::Align::kLeft) +
+    text += arm(differences[first].arm) +
             tables::Pad(fmt::format("{}", differences[first].pairs), kPairsWidth, tables::Align::kRight);
     for (std::size_t m = 0; m < kMetrics; ++m) {
       const ArmDifference& d = differences[first + m];

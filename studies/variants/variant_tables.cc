@@ -14,23 +14,58 @@
 namespace ed3r::variants {
 namespace {
 
-constexpr int kArmWidth = 14, kVariantWidth = 26, kCellWidth = 26;
+constexpr int kLeastArmWidth = 14, kLeastVariantWidth = 26, kCellWidth = 26;
 constexpr int kIdWidth = 5, kFewestWords = 24, kMostWords = 60;
+
+// The columns that name a row of a table, and the table's heading under them.
+struct RowNames {
+  tables::TextColumn arm, variant;
+
+  RowNames(const std::vector<std::string>& arms, const std::vector<std::string>& variants)
+      : arm(arms, kLeastArmWidth), variant(variants, kLeastVariantWidth) {}
+
+  std::string Of(const std::string& arm_name, const std::string& variant_name) const {
+    return arm(arm_name) + variant(variant_name);
+  }
+
+  std::string Heading() const {
+    std::string text = Of("arm", "variant");
+    for (const char* metric : kComparedMetrics)
+      text += tables::Pad(DifferenceHeading(metric), kCellWidth, tables::Align::kRight);
+    return fmt::format("{}\n{}\n", text,
+                       tables::Rule(std::max(tables::kTerminalWidth, tables::DisplayWidth(text))));
+  }
+};
+
+RowNames NamesOf(const std::vector<VariantDifference>& differences) {
+  std::vector<std::string> arms, variants;
+  for (const VariantDifference& difference : differences) {
+    arms.push_back(difference.arm);
+    variants.push_back(difference.variant);
+  }
+  return {arms, variants};
+}
+
+RowNames NamesOf(std::span<const metrics::ArmMetrics> metrics) {
+  std::vector<std::string> arms, variants;
+  for (const metrics::ArmMetrics& arm : metrics) {
+    const sweep::ArmId id = sweep::ArmId::Of(arm.name);
+    arms.push_back(id.name);
+    variants.push_back(id.variant);
+  }
+  return {arms, variants};
+}
 
 std::string DifferenceTable(const VariantStudy& study) {
   std::string text =
       fmt::format("Variants minus '{}', {} (* interval without 0)\n", study.variants[0],
                   study.same_draws ? "paired by scenario" : "of other seeds: other draws at the same places");
-  text += tables::Pad("arm", kArmWidth, tables::Align::kLeft) +
-          tables::Pad("variant", kVariantWidth, tables::Align::kLeft);
-  for (const char* metric : kComparedMetrics)
-    text += tables::Pad(DifferenceHeading(metric), kCellWidth, tables::Align::kRight);
-  text += fmt::format("\n{}\n", tables::Rule(tables::kTerminalWidth));
+  const RowNames names = NamesOf(study.differences);
+  text += names.Heading();
   constexpr std::size_t kMetrics = std::size(kComparedMetrics);
   for (std::size_t i = 0; i < study.differences.size(); i += kMetrics) {
     const VariantDifference& first = study.differences[i];
-    text += tables::Pad(first.arm, kArmWidth, tables::Align::kLeft) +
-            tables::Pad(first.variant, kVariantWidth, tables::Align::kLeft);
+    text += names.Of(first.arm, first.variant);
     for (std::size_t m = 0; m < kMetrics; ++m)
       text += tables::Pad(DifferenceCell(study.differences[i + m], study.differences[i + m].Certain()),
                           kCellWidth, tables::Align::kRight);
@@ -186,16 +221,12 @@ std::string ChangeTable(const VariantStudy& study) {
 }  // namespace
 
 std::string VariantValuesText(std::span<const metrics::ArmMetrics> arms) {
-  std::string text = "All variants (95 % intervals)\n" + tables::Pad("arm", kArmWidth, tables::Align::kLeft) +
-                     tables::Pad("variant", kVariantWidth, tables::Align::kLeft);
-  for (const char* metric : kComparedMetrics)
-    text += tables::Pad(DifferenceHeading(metric), kCellWidth, tables::Align::kRight);
-  text += fmt::format("\n{}\n", tables::Rule(tables::kTerminalWidth));
+  const RowNames names = NamesOf(arms);
+  std::string text = "All variants (95 % intervals)\n" + names.Heading();
   for (const metrics::ArmMetrics& arm : arms) {
     if (arm.missions == 0) continue;
     const sweep::ArmId id = sweep::ArmId::Of(arm.name);
-    text += tables::Pad(id.name, kArmWidth, tables::Align::kLeft) +
-            tables::Pad(id.variant, kVariantWidth, tables::Align::kLeft);
+    text += names.Of(id.name, id.variant);
     for (const char* metric : kComparedMetrics)
       text += tables::Pad(ValueCell(arm[metric]), kCellWidth, tables::Align::kRight);
     text += "\n";

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "studies/report/html.h"
 #include "studies/report/report.h"
@@ -43,6 +44,17 @@ const variants::ArmDifference& EnergyOf(const std::vector<variants::ArmDifferenc
   for (const variants::ArmDifference& d : differences)
     if (d.arm == arm && d.metric == "total_energy_kj") return d;
   throw std::out_of_range(arm);
+}
+
+TEST(ArmDifferencesTest, ALongNameDoesNotShiftItsRow) {
+  const std::string name = "random-offload,path_loss_exponent=3.2";
+  const std::string text = variants::ArmDifferenceText(
+      variants::CompareArms(std::vector{ArmOf("online", "rbs", kNothing), ArmOf("online", name, kLess)}));
+  std::istringstream lines(text);
+  std::string line, heading;
+  while (std::getline(lines, line) && !line.starts_with(name))
+    if (line.starts_with("arm ")) heading = line;
+  EXPECT_EQ(heading.find("pairs") + 4, line.find(" 6 ") + 1) << text;
 }
 
 TEST(ArmDifferencesTest, EveryArmIsComparedWithTheRandomWalk) {

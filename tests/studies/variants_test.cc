@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "studies/statistics/intervals.h"
 #include "studies/variants/paired.h"
@@ -77,6 +78,21 @@ TEST(VariantsTest, DifferencesArePairedByScenario) {
   EXPECT_TRUE(energy.Certain()) << "a rule-based arm asks no network";
   EXPECT_EQ(variants::DifferenceCsv(study).substr(0, 73),
             "arm,variant,metric,base,difference,lo,hi,pairs,base_networks,networks\nrbs");
+}
+
+TEST(VariantsTest, LongNamesDoNotRunTogether) {
+  std::vector<metrics::ArmData> arms = Study();
+  const std::string arm = "random-offload", variant = "robot.mass_kg=3,robot.speed_mps=6.5";
+  arms[0].name = arm + "@base", arms[1].name = arm + '@' + variant;
+  const variants::VariantStudy study = variants::CompareVariants(arms, variants::Verdicts::kJudged);
+  const std::string text = variants::VariantText(study);
+  EXPECT_NE(text.find(arm + "  " + variant + "  "), std::string::npos) << text;
+  // The headings stand over their columns.
+  std::istringstream lines(text);
+  std::string title, heading, rule, row;
+  for (std::string* line : {&title, &heading, &rule, &row}) std::getline(lines, *line);
+  EXPECT_EQ(heading.find("variant"), row.find(variant)) << text;
+  EXPECT_EQ(heading.size(), row.size()) << text;
 }
 
 TEST(VariantsTest, OrdersThatChangeAreARowEach) {
