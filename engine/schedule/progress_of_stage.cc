@@ -45,8 +45,8 @@ StageProgress ProgressOf(const sweep::SweepPlan& plan, const std::string& name,
     if (progress.missing > 0) break;
     std::erase_if(progress.open, [&](int arm) {
       return !stage.precision || progress.upto == stage.missions ||
-             half_width(dir, number, arm, progress.upto, stage.precision->metric) <=
-                 stage.precision->half_width;
+             half_width(dir, number, stage.arms[static_cast<std::size_t>(arm)].name, progress.upto,
+                        stage.precision->metric) <= stage.precision->half_width;
     });
   }
   return progress;

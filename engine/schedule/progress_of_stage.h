@@ -12,9 +12,10 @@
 namespace ed3r::schedule {
 
 // Half of the width of the 95 % interval that the first `missions` missions of an arm, all stored in `dir`, give for a
-// metric, in its unit; NaN where they give none.
-using HalfWidthFn = std::function<double(const std::string& dir, int stage, int arm, int missions,
-                                         const std::string& metric)>;
+// metric, in its unit; NaN where they give none. The arm by its name: where the plan is about to grow, it has another number
+// in `dir`.
+using HalfWidthFn = std::function<double(const std::string& dir, int stage, const std::string& arm,
+                                         int missions, const std::string& metric)>;
 
 struct StageProgress {
   std::vector<int> open;     // arms that are asked for more missions; none when the stage is finished

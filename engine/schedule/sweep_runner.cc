@@ -123,7 +123,11 @@ class SweepRun {
     RemoveLeftovers(options.dir);
     RemoveLeftovers(options.cache_dir);
     LookForDamage();
-    summary_.grown = store_->Grown();
+    if (options.only_failed && !store_->Grown().empty())
+      throw UserError(fmt::format(
+          "{}: --only-failed flies nothing that is missing, and the plan asks for more than is there ({}); "
+          "leave --only-failed out, or give the plan that is there",
+          options.dir, store_->Grown()));
     summary_.stored_before = static_cast<std::int64_t>(store_->Stored().size());
   }
 
@@ -133,6 +137,9 @@ class SweepRun {
     if (options_.profile) sampler.emplace();
     try {
       RunStages();
+      // What was interrupted before it put anything has the plan of before.
+      if (!summary_.flown.interrupted) store_->Grow();
+      if (store_->HasGrown()) summary_.grown = store_->Grown();
     } catch (...) {  // an empty store would look like a task that has begun
       store_->DiscardUnused();
       throw;
@@ -175,6 +182,12 @@ class SweepRun {
     summary_.repaired.insert(summary_.repaired.end(), damage.begin(), damage.end());
   }
 
+  bool StandsOnItself() const {
+    std::error_code none;  // a foundation that is not there is another one
+    return options_.foundation.empty() ||
+           std::filesystem::equivalent(options_.foundation, options_.dir, none);
+  }
+
   const std::string& FoundationDir() const {
     return options_.foundation.empty() ? options_.dir : options_.foundation;
   }
@@ -186,7 +199,7 @@ class SweepRun {
 
   // A part that builds on nothing is merged into it later: it may be of a plan that the foundation's grows into then.
   void CheckFoundation() const {
-    if (!HasFoundation()) return;
+    if (StandsOnItself() || !HasFoundation()) return;
     store::ResultReader reader(options_.foundation);
     const store::Recipe& there = reader.StoredRecipe();
     store::Recipe here = RecipeOf(plan_, inputs_, options_);
@@ -205,7 +218,7 @@ class SweepRun {
 
   // What is stored where the stages before are.
   std::vector<sweep::RunId> Foundation() const {
-    if (options_.foundation.empty()) return store_->Stored();
+    if (StandsOnItself()) return store_->Stored();
     if (!HasFoundation()) return {};
     store::ResultReader reader(options_.foundation);
     RefuseOther(DifferenceOfRun(reader));
@@ -251,7 +264,8 @@ class SweepRun {
     for (int arm = 0; arm < static_cast<int>(stage.arms.size()); ++arm)
       if (NeedsTraining(stage.arms[static_cast<std::size_t>(arm)].config)) asking.push_back(arm);
     if (asking.empty() || networks_ != nullptr) return;
-    const store::FlownNetworks flown = store::ResultReader(FoundationDir()).Networks();
+    const store::FlownNetworks flown =
+        StandsOnItself() ? store_->Networks() : store::ResultReader(FoundationDir()).Networks();
     const bool all = std::all_of(asking.begin(), asking.end(), [&](int arm) {
       return std::any_of(flown.uses.begin(), flown.uses.end(),
                          [&](const store::NetworkUse& use) { return use.stage == number && use.arm == arm; });
@@ -336,7 +350,8 @@ class SweepRun {
       store_->Commit();
       if (summary_.flown.interrupted || summary_.flown.failed > failed_before) return;
       std::erase_if(open, [&](int arm) {
-        return options_.half_width(options_.dir, stage, arm, upto, precision.metric) <= precision.half_width;
+        return options_.half_width(options_.dir, stage, plan.arms[static_cast<std::size_t>(arm)].name, upto,
+                                   precision.metric) <= precision.half_width;
       });
     }
     finished_.insert(plan.name);

@@ -46,18 +46,20 @@ struct Samples {
 
 Samples ReadSamples(store::ResultReader& reader, const sweep::SweepPlan& plan, const WarmupPart& part,
                     const AgentsConfig& agents) {
-  const Config& flown =
-      plan.stages[static_cast<std::size_t>(part.stage)].arms[static_cast<std::size_t>(part.arm)].config;
+  const sweep::Arm& flown =
+      plan.stages[static_cast<std::size_t>(part.stage)].arms[static_cast<std::size_t>(part.arm)];
+  // By its name: where the plan is about to grow, the arm has another number there.
+  const int arm = reader.ArmNamed(part.stage, flown.name);
   Samples samples;
   reader.NeedTimesteps(part.stage);
   std::int64_t rows = 0;
-  reader.ForEachMission(part.stage, part.arm, part.first, part.end, store::Steps::kSkip,
+  reader.ForEachMission(part.stage, arm, part.first, part.end, store::Steps::kSkip,
                         [&](const store::StoredMission& mission) { rows += mission.record.timesteps; });
   samples.rc.Reserve(static_cast<std::size_t>(rows));
   samples.robot.Reserve(static_cast<std::size_t>(rows));
-  reader.ForEachMission(part.stage, part.arm, part.first, part.end, store::Steps::kLoad,
+  reader.ForEachMission(part.stage, arm, part.first, part.end, store::Steps::kLoad,
                         [&](const store::StoredMission& mission) {
-                          mission::AppendSamples(mission.record, mission.id.mission, flown, agents,
+                          mission::AppendSamples(mission.record, mission.id.mission, flown.config, agents,
                                                  samples.rc, samples.robot);
                         });
   return samples;

@@ -161,13 +161,11 @@ std::string Added(const sweep::WrittenPlan& there, const sweep::WrittenPlan& her
 // Numbers of the file's runs in the grown layout, by their numbers there.
 std::vector<std::int64_t> NewNumbers(const RunLayout& there, const RunLayout& here) {
   std::vector<std::int64_t> numbers;
-  for (std::size_t s = 0; s < there.stages.size(); ++s)
-    for (const RunLayout::Arm& arm : there.stages[s].arms) {
-      const std::vector<RunLayout::Arm>& arms = here.stages.at(s).arms;
-      const auto found = std::find(arms.begin(), arms.end(), arm);
-      ED3R_CHECK(found != arms.end(), arm.name);
-      numbers.push_back(here.RunIndex(static_cast<int>(s), static_cast<int>(found - arms.begin())));
-    }
+  int stage = 0;
+  for (const std::vector<int>& arms : ArmsAfterGrowth(there, here)) {
+    for (const int arm : arms) numbers.push_back(here.RunIndex(stage, arm));
+    ++stage;
+  }
   return numbers;
 }
 
@@ -205,6 +203,20 @@ std::set<std::string> LearnedStages(Connection& database, const RunLayout& layou
     if (const auto place = layout.Place(select.Int(0), 0))
       learned.insert(layout.stages[static_cast<std::size_t>(place->stage)].name);
   return learned;
+}
+
+std::vector<std::vector<int>> ArmsAfterGrowth(const RunLayout& there, const RunLayout& here) {
+  std::vector<std::vector<int>> numbers;
+  for (std::size_t s = 0; s < there.stages.size(); ++s) {
+    numbers.emplace_back();
+    for (const RunLayout::Arm& arm : there.stages[s].arms) {
+      const std::vector<RunLayout::Arm>& arms = here.stages.at(s).arms;
+      const auto found = std::find(arms.begin(), arms.end(), arm);
+      ED3R_CHECK(found != arms.end(), arm.name);
+      numbers.back().push_back(static_cast<int>(found - arms.begin()));
+    }
+  }
+  return numbers;
 }
 
 void Grow(Connection& database, const Recipe& recipe, const RunLayout& layout) {

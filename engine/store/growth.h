@@ -4,6 +4,7 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
 #include "engine/store/layout.h"
 #include "engine/store/recipe.h"
@@ -26,6 +27,9 @@ Growth GrowthOf(const Recipe& there, const Recipe& here, const std::set<std::str
 
 // The stages whose arms have networks in the file.
 std::set<std::string> LearnedStages(Connection& database, const RunLayout& layout);
+
+// The arm's number in the grown plan, by stage and number there.
+std::vector<std::vector<int>> ArmsAfterGrowth(const RunLayout& there, const RunLayout& here);
 
 // Gives the file the grown plan and its missions the numbers that their arms have in it. Call it in a transaction.
 void Grow(Connection& database, const Recipe& recipe, const RunLayout& layout);

@@ -191,7 +191,8 @@ MergeSummary MergeStores(const std::string& out, const std::vector<std::string>&
   StoreFile file(out, recipe, layout);
   try {
     Transaction transaction(file.database(), Transaction::Kind::kWrite);
-    CheckWhole(file.database(), layout);
+    file.TakeUp(recipe, layout);
+    if (file.grown().empty()) CheckWhole(file.database(), layout);  // else looked through before it grows
     Target target(file.database(), layout, out);
     for (std::size_t begin = 0; begin < others.size(); begin += kReadAtOnce) {
       std::vector<std::unique_ptr<ResultReader>> sources;

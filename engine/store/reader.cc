@@ -53,6 +53,14 @@ std::vector<InputFile> ResultReader::Files() { return ReadFiles(database_); }
 
 FlownNetworks ResultReader::Networks() { return ReadNetworks(database_, layout_); }
 
+int ResultReader::ArmNamed(int stage, const std::string& name) const {
+  const RunLayout::Stage& there = layout_.stages.at(static_cast<std::size_t>(stage));
+  for (std::size_t arm = 0; arm < there.arms.size(); ++arm)
+    if (there.arms[arm].name == name) return static_cast<int>(arm);
+  throw UserError(
+      fmt::format("{}: stage {} has no arm {} there; give a run of the same sweep", dir_, there.name, name));
+}
+
 std::vector<sweep::RunId> ResultReader::Stored() { return ReadStored(database_, layout_); }
 
 std::int64_t ResultReader::CountMissions() {

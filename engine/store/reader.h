@@ -63,6 +63,9 @@ class ResultReader {
   // Of the file: 1 has no checksums.
   int Format() const { return format_; }
 
+  // The number of a stage's arm. UserError where it has none of this name.
+  int ArmNamed(int stage, const std::string& name) const;
+
   // The columns that the file has.
   const RecordTables& Tables() const { return *tables_; }
 

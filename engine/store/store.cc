@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <optional>
+#include <utility>
 
 #include "engine/core/check.h"
 #include "engine/store/damage.h"
+#include "engine/store/growth.h"
 #include "engine/store/records.h"
 #include "engine/store/schema.h"
 #include "engine/store/sqlite.h"
@@ -35,13 +38,22 @@ class SqliteStore final : public ResultStore {
  public:
   SqliteStore(const std::string& dir, const Recipe& recipe, const RunLayout& layout, OtherCode other_code,
               Repair repair)
-      : layout_(layout), file_(dir, recipe, layout, other_code, repair) {
-    writer_.emplace(file_.database(), layout_);
+      : layout_(layout), there_(layout), file_(dir, recipe, layout, other_code, repair) {
+    if (file_.grown().empty()) {
+      Transaction transaction(file_.database(), Transaction::Kind::kWrite);
+      file_.TakeUp(recipe, layout_);
+      transaction.Commit();
+      writer_.emplace(file_.database(), layout_);
+    } else {
+      there_ = ReadLayout(file_.database());
+      arms_here_ = ArmsAfterGrowth(there_, layout_);
+      waiting_ = recipe;
+    }
     BeginSession(recipe);
   }
 
   ~SqliteStore() override {
-    if (!writer_) return;
+    if (discarded_) return;
     try {
       group_.reset();
       Statement end(file_.database(), "UPDATE sessions SET ended_utc = ? WHERE session = ?");
@@ -56,12 +68,21 @@ class SqliteStore final : public ResultStore {
 
   std::vector<DamagedMission> Repaired() const override { return file_.repaired(); }
 
-  std::vector<sweep::RunId> Stored() const override { return ReadStored(file_.database(), layout_); }
+  bool HasGrown() const override { return !file_.grown().empty() && !waiting_; }
+
+  void Grow() override {
+    if (!waiting_) return;
+    InGroup([&] { TakeUpPlan(); });
+    Commit();
+  }
+
+  std::vector<sweep::RunId> Stored() const override { return AsHere(ReadStored(file_.database(), there_)); }
 
   void Put(const sweep::RunId& id, const mission::MissionRecord& record, double wall_s) override {
     CheckStorable(record);
     ED3R_CHECK(layout_.Contains(id), fmt::format("{}/{}/{}", id.stage, id.arm, id.mission));
     InGroup([&] {
+      TakeUpPlan();
       writer_->InsertMission(id, record);
       writer_->InsertTiming(id, session_, wall_s);
     });
@@ -69,17 +90,26 @@ class SqliteStore final : public ResultStore {
 
   std::vector<sweep::RunId> Failed() const override {
     std::vector<sweep::RunId> failed;
-    for (const FailedMission& failure : ReadFailures(file_.database(), layout_)) failed.push_back(failure.id);
-    return failed;
+    for (const FailedMission& failure : ReadFailures(file_.database(), there_)) failed.push_back(failure.id);
+    return AsHere(std::move(failed));
+  }
+
+  FlownNetworks Networks() const override {
+    FlownNetworks networks = ReadNetworks(file_.database(), there_);
+    for (NetworkUse& use : networks.uses) use.arm = ArmHere(use.stage, use.arm);
+    return networks;
   }
 
   void PutFailure(const sweep::RunId& id, const Failure& failure) override {
     const std::int64_t scenario = layout_.Scenario(id);  // throws before the group is touched
-    InGroup([&] { writer_->InsertFailure(id, scenario, layout_.seed, failure); });
+    InGroup([&] {
+      TakeUpPlan();
+      writer_->InsertFailure(id, scenario, layout_.seed, failure);
+    });
   }
 
   std::vector<DamagedMission> FindDamage() override {
-    return ed3r::store::FindDamage(file_.database(), layout_);
+    return ed3r::store::FindDamage(file_.database(), there_);
   }
 
   void Remove(const std::vector<DamagedMission>& missions) override {
@@ -88,7 +118,10 @@ class SqliteStore final : public ResultStore {
   }
 
   void PutNetworks(const FlownNetworks& networks) override {
-    InGroup([&] { ed3r::store::PutNetworks(file_.database(), layout_, networks); });
+    InGroup([&] {
+      TakeUpPlan();
+      ed3r::store::PutNetworks(file_.database(), layout_, networks);
+    });
     Commit();
   }
 
@@ -109,7 +142,7 @@ class SqliteStore final : public ResultStore {
         file_.database().Int("SELECT (SELECT count(*) FROM missions) + (SELECT count(*) FROM "
                              "failures) + (SELECT count(*) FROM networks)") > 0)
       return;
-    broken_ = true;
+    broken_ = discarded_ = true;
     group_.reset();
     writer_.reset();
     file_.Discard();
@@ -126,6 +159,28 @@ class SqliteStore final : public ResultStore {
     Statement note(database, "INSERT INTO session_notes VALUES (?, ?, ?)");
     for (const auto& [key, value] : recipe.notes) note.Run(session_, key, value);
     transaction.Commit();
+  }
+
+  // Of an arm of the file in the plan that it will have.
+  int ArmHere(int stage, int arm) const {
+    if (!waiting_) return arm;
+    return arms_here_.at(static_cast<std::size_t>(stage)).at(static_cast<std::size_t>(arm));
+  }
+
+  std::vector<sweep::RunId> AsHere(std::vector<sweep::RunId> missions) const {
+    if (!waiting_) return missions;
+    for (sweep::RunId& id : missions) id.arm = ArmHere(id.stage, id.arm);
+    std::sort(missions.begin(), missions.end());
+    return missions;
+  }
+
+  // In the open group, where the plan waits to grow. Keys of before are not those of after: the writer is made anew.
+  void TakeUpPlan() {
+    if (!waiting_) return;
+    file_.TakeUp(*waiting_, layout_);
+    writer_.emplace(file_.database(), layout_);
+    there_ = layout_;
+    waiting_.reset();
   }
 
   // Runs `write` inside the open group. A write that fails may have got half-way, so the whole group goes
@@ -145,11 +200,14 @@ class SqliteStore final : public ResultStore {
   }
 
   RunLayout layout_;
-  mutable StoreFile file_;              // reading moves SQLite's cursors
-  std::optional<RecordWriter> writer_;  // none once it is discarded
-  std::optional<Transaction> group_;    // since the last commit
+  RunLayout there_;                          // of what is in the file: until that grows, another
+  std::vector<std::vector<int>> arms_here_;  // while it waits to grow
+  mutable StoreFile file_;                   // reading moves SQLite's cursors
+  std::optional<RecordWriter> writer_;       // none before it has grown, nor once it is discarded
+  std::optional<Recipe> waiting_;            // to be taken up with what is put first
+  std::optional<Transaction> group_;         // since the last commit
   std::int64_t session_ = 0;
-  bool broken_ = false;
+  bool broken_ = false, discarded_ = false;
 };
 
 }  // namespace

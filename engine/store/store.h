@@ -23,8 +23,9 @@ namespace ed3r::store {
 class ResultStore {
  public:
   // Makes DIR and the file when missing, continues it when there; begins a session with recipe.notes. A plan that asks for
-  // more missions or arms than the file's, and leaves those there as they are, takes its place (growth.h); `repair` says what
-  // becomes of damaged missions then.
+  // more missions or arms than the file's, and leaves those there as they are, takes its place (growth.h) together with the
+  // first mission, failure or network that is put, so that a run that is refused before keeps its plan; `repair` says what
+  // becomes of damaged missions then. Until then other readers see the file's own plan, and this object what it will be.
   static std::unique_ptr<ResultStore> Open(const std::string& dir, const Recipe& recipe,
                                            const RunLayout& layout, OtherCode other_code = OtherCode::kRefuse,
                                            Repair repair = Repair::kNo);
@@ -36,8 +37,12 @@ class ResultStore {
 
   // What the plan has got since the last session: "stage online: 20 missions per arm for 10"; "" where it is the same.
   virtual std::string Grown() const = 0;
+  // False until the file has it.
+  virtual bool HasGrown() const = 0;
+  // Grows now, and keeps it: a run that has ended well with nothing to fly has the plan that it was asked for.
+  virtual void Grow() = 0;
 
-  // Damaged missions that were taken out before the plan grew.
+  // Damaged missions that were taken out so that the plan may grow.
   virtual std::vector<DamagedMission> Repaired() const = 0;
 
   // Finished missions in plan order. Failed ones are not among them: they are flown again. UserError when one is not in
@@ -46,6 +51,9 @@ class ResultStore {
 
   // Missions that have failed and not been flown since, in plan order.
   virtual std::vector<sweep::RunId> Failed() const = 0;
+
+  // UserError where one of them is damaged.
+  virtual FlownNetworks Networks() const = 0;
 
   // A mission is stored once; wall_s is kept apart from the results. A record whose timesteps are not
   // numbered upwards is an InternalError.

@@ -156,23 +156,26 @@ void StoreFile::CheckBeforeGrowth(Repair repair) {
 void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code,
                              Repair repair) {
   Connect();
-  const bool empty = CheckFile(*database_, FileUse::kWrite) == FileKind::kEmpty;
-  if (!empty) grown_ = CheckSameRun(*database_, dir_, recipe, layout, other_code);
-  SetJournal(empty);  // only now: a refused file stays as it was
+  empty_ = CheckFile(*database_, FileUse::kWrite) == FileKind::kEmpty;
+  if (!empty_) grown_ = CheckSameRun(*database_, dir_, recipe, layout, other_code);
+  SetJournal(empty_);  // only now: a refused file stays as it was
   database_->Execute(fmt::format("PRAGMA cache_size = -{}", kCacheKib));
   database_->Execute("PRAGMA secure_delete = OFF");  // Debian's default wipes freed space
+  // Also for its own sake: what a file system cannot do for a writer shows now, where another journal can still be taken.
   Transaction transaction(*database_, Transaction::Kind::kWrite);
-  if (empty) {
+  if (!grown_.empty()) CheckBeforeGrowth(repair);
+  if (!repaired_.empty()) transaction.Commit();
+}
+
+void StoreFile::TakeUp(const Recipe& recipe, const RunLayout& layout) {
+  if (empty_)
     CreateTables(*database_, recipe, layout);
-  } else if (grown_.empty()) {
+  else if (grown_.empty())
     ContinueRecipe(*database_, recipe);
-  } else {
-    CheckBeforeGrowth(repair);
+  else
     Grow(*database_, recipe, layout);
-  }
   AddFailureKind(*database_);
   CreateMissionsIndex(*database_);
-  transaction.Commit();
 }
 
 StoreFile::~StoreFile() {
@@ -193,8 +196,8 @@ void FinishCommit(const std::string& dir) {
 }
 
 void StoreFile::Discard() {
-  database_.reset();
   if (!created_) return;
+  database_.reset();
   std::error_code ignored;
   for (const char* suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(FileIn(dir_) + suffix, ignored);
   lock_.reset();

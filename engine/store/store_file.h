@@ -21,10 +21,10 @@ namespace ed3r::store {
 // writers away (file_system.h, owner_file.h).
 class StoreFile {
  public:
-  // Makes DIR and the file when missing. UserError, and nothing changed, when the file holds the results of
-  // another recipe or layout, is not a store, or has another writer; results of other code are taken on and their
-  // recipe then names both where `other_code` accepts it. A recipe that asks for more of the same grows the file
-  // (growth.h), unless there are damaged missions in it: UserError, or they are taken out before with Repair::kYes.
+  // Makes DIR and the file when missing, without tables yet: TakeUp does the rest. UserError, and nothing changed, when the
+  // file holds the results of another recipe or layout, is not a store, or has another writer; results of other code are
+  // taken on where `other_code` accepts it. A recipe that asks for more of the same may grow the file (growth.h), unless
+  // there are damaged missions in it: UserError, or they are taken out at once with Repair::kYes.
   StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout,
             OtherCode other_code = OtherCode::kRefuse, Repair repair = Repair::kNo);
   ~StoreFile();
@@ -33,9 +33,12 @@ class StoreFile {
 
   Connection& database() { return *database_; }
   bool created() const { return created_; }
-  // What the plan has got since the file was written last; "" where it is the same.
+  // Gives the file the recipe that it was opened with: makes the tables, adds what another code is called, or grows. All of it
+  // is the caller's transaction's, so that what is refused after all leaves no trace.
+  void TakeUp(const Recipe& recipe, const RunLayout& layout);
+  // What TakeUp adds to the plan; "" where it is the same.
   const std::string& grown() const { return grown_; }
-  // What was taken out before it grew.
+  // What was taken out so that it may grow.
   const std::vector<DamagedMission>& repaired() const { return repaired_; }
 
   // StoreError once another writer has taken the directory over, which it does only when this one seemed dead.
@@ -52,8 +55,8 @@ class StoreFile {
   void CheckBeforeGrowth(Repair repair);
 
   std::string dir_;
-  std::string first_created_dir_;  // of the path that leads to the file; "" where all was there
-  bool created_ = false;
+  std::string first_created_dir_;         // of the path that leads to the file; "" where all was there
+  bool created_ = false, empty_ = false;  // `empty_`: without tables
   std::string grown_;
   std::vector<DamagedMission> repaired_;
   bool rollback_journal_ = false;

@@ -91,11 +91,11 @@ std::future<std::string> CheckWhole(const std::string& dir) {
   return std::async(std::launch::async, [dir] { return store::ResultReader(dir).CheckWhole(); });
 }
 
-double HalfWidth(const std::string& dir, int stage, int arm, int missions, const std::string& metric) {
+double HalfWidth(const std::string& dir, int stage, const std::string& arm, int missions,
+                 const std::string& metric) {
   store::ResultReader reader(dir);
   const store::RunLayout::Stage& flown = reader.Layout().stages.at(static_cast<std::size_t>(stage));
-  metrics::ArmData data{flown.name, flown.arms.at(static_cast<std::size_t>(arm)).name,
-                        LoadMissions(reader, stage, arm).records};
+  metrics::ArmData data{flown.name, arm, LoadMissions(reader, stage, reader.ArmNamed(stage, arm)).records};
   return HalfWidthOf(std::move(data), missions, metric);
 }
 

@@ -20,6 +20,7 @@ std::future<std::string> CheckWhole(const std::string& dir);
 
 // Half of the width of a metric's 95 % interval over the first `missions` missions of an arm; NaN where they give none
 // or are not all stored. For stages with a precision (engine/sweep/plan.h).
-double HalfWidth(const std::string& dir, int stage, int arm, int missions, const std::string& metric);
+double HalfWidth(const std::string& dir, int stage, const std::string& arm, int missions,
+                 const std::string& metric);
 
 }  // namespace ed3r::report

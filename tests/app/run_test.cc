@@ -180,6 +180,15 @@ TEST(RunTest, OnlyWhatHasFailedIsFlownAgainWhereAsked) {
   EXPECT_EQ(again.status, 3) << "they fail again";
   EXPECT_NE(again.out.find(fmt::format("{} failed", before[1])), std::string::npos) << again.out;
   EXPECT_EQ(counts(), before) << "what is missing is left";
+  std::string larger = run;
+  larger.replace(larger.find("12"), 2, "14");
+  const CommandResult more = Ed3r(larger + " --only-failed");
+  EXPECT_EQ(more.status, 2);
+  EXPECT_NE(more.err.find("--only-failed flies nothing that is missing, and the plan asks for more than is "
+                          "there (stage online: 14 missions per arm for 12)"),
+            std::string::npos)
+      << more.err;
+  EXPECT_EQ(counts(), before) << "nothing has grown";
 }
 
 TEST(RunTest, StatusSeesWhatIsDamaged) {

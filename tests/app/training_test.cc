@@ -71,6 +71,38 @@ TEST(TrainingTest, AStageBeforeItsOwnNetworksIsRefused) {
   EXPECT_EQ(Ed3r(parts + "second").status, 0);
 }
 
+// What is refused, whenever it is, leaves a run that its own sweep goes on with.
+TEST(TrainingTest, ARunThatIsRefusedHasNotGrown) {
+  const ScratchFolder scratch;
+  const std::string sweep = Write(scratch, "learn-send");
+  const std::string run = (scratch / "run").string(), part = (scratch / "part").string();
+  const auto command = [&](const std::string& dir, const std::string& more) {
+    return fmt::format("run {} --quiet --out {} --cache {} {}", sweep, dir, (scratch / "cache").string(),
+                       more);
+  };
+  ASSERT_EQ(Ed3r(command(part, "--stage walk --shard 1/2")).status, 0);
+  const CommandResult early = Ed3r(command(part, "--stage second --missions second=8"));
+  EXPECT_EQ(early.status, 2);
+  EXPECT_NE(early.err.find("holds no networks"), std::string::npos) << early.err;
+  EXPECT_EQ(Ed3r(command(part, "--stage walk --shard 2/2")).status, 0);
+
+  ASSERT_EQ(Ed3r(command(run, "")).status, 0);
+  const std::string digest = Ed3r("digest " + run).out;
+  std::filesystem::path network;
+  for (const auto& file : std::filesystem::directory_iterator(scratch / "cache"))
+    if (file.path().extension() == ".rfnn") network = file.path();
+  std::filesystem::copy(network, scratch / "kept");
+  std::ofstream(network) << "no network";
+  EXPECT_EQ(Ed3r(command(run, "--missions second=8")).status, 2);
+  EXPECT_EQ(Ed3r("digest " + run).out, digest);
+  std::filesystem::copy(scratch / "kept", network, std::filesystem::copy_options::overwrite_existing);
+  const CommandResult again = Ed3r(command(run, ""));
+  EXPECT_EQ(again.status, 0) << again.err;
+  ASSERT_EQ(Ed3r(command(run, "--missions second=8")).status, 0);
+  ASSERT_EQ(Ed3r(command((scratch / "fresh").string(), "--missions second=8")).status, 0);
+  EXPECT_EQ(Ed3r("digest " + run).out, Ed3r("digest " + (scratch / "fresh").string()).out);
+}
+
 TEST(TrainingTest, AWarmUpThatNoTrainingStageStandsBehindIsRefused) {
   const ScratchFolder scratch;
   const std::string sweep = Write(scratch, "[learn-walk, send]");  // ecd2r learns from send, after it

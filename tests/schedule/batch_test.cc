@@ -256,8 +256,9 @@ TEST(StageProgressTest, WithoutAPrecisionAllMissionsAreDue) {
 TEST(StageProgressTest, APrecisionIsDecidedRoundByRound) {
   const sweep::SweepPlan plan = sweep::LoadText(kPrecisePlan);
   // Arm 0 is known after the first round, arm 1 never.
-  const HalfWidthFn half_width = [](const std::string&, int, int arm, int, const std::string&) {
-    return arm == 0 ? 1.0 : std::nan("");
+  const HalfWidthFn half_width = [&](const std::string&, int, const std::string& arm, int,
+                                     const std::string&) {
+    return arm == plan.stages[0].arms[0].name ? 1.0 : std::nan("");
   };
   const StageProgress first = ProgressOf(plan, "online", {}, "", half_width);
   EXPECT_EQ(first.upto, 40);

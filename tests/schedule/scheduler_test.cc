@@ -47,6 +47,9 @@ class FakeStore final : public store::ResultStore {
  public:
   const store::RunLayout& Layout() const override { return layout_; }
   std::string Grown() const override { return ""; }
+  bool HasGrown() const override { return false; }
+  void Grow() override {}
+  store::FlownNetworks Networks() const override { return {}; }
   std::vector<store::DamagedMission> Repaired() const override { return {}; }
   std::vector<sweep::RunId> Stored() const override { return {}; }
   void Put(const sweep::RunId& id, const mission::MissionRecord&, double wall_s) override {

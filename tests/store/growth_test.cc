@@ -55,6 +55,13 @@ std::unique_ptr<ResultStore> Open(const std::string& dir, const sweep::SweepPlan
   return ResultStore::Open(dir, RecipeOf(plan), LayoutOf(plan));
 }
 
+// What the plan has got.
+std::string Grow(const std::string& dir, const sweep::SweepPlan& plan) {
+  const auto store = Open(dir, plan);
+  store->Grow();
+  return store->Grown();
+}
+
 // What an arm's mission leaves, wherever the arm stands in the plan.
 mission::MissionRecord RecordOf(const sweep::SweepPlan& plan, const sweep::RunId& id) {
   const sweep::Arm& arm =
@@ -114,6 +121,80 @@ TEST_F(GrowthTest, MoreMissionsAreARunOfThatManyFromTheStart) {
   EXPECT_EQ(DigestOfDir(Dir()), Fresh(more));
 }
 
+// A run may be refused after it was opened, or killed: until something is put, the plan of before still flies it.
+TEST_F(GrowthTest, ThePlanGrowsWithWhatIsPutFirst) {
+  const sweep::SweepPlan few = Masses({1, 3}, 10), more = Masses({1, 2, 3}, 12);
+  Fly(Dir(), few);
+  const std::string before = ReadPlan(), digest = DigestOfDir(Dir());
+  {
+    const auto store = Open(Dir(), more);
+    EXPECT_EQ(store->Stored().back(), (sweep::RunId{0, 2, 9})) << "of the plan that it will have";
+    EXPECT_TRUE(store->FindDamage().empty());
+    store->PutNote("a note", "changes no plan");
+    store->Commit();
+    EXPECT_FALSE(store->HasGrown());
+    EXPECT_EQ(ReadPlan(), before);
+    store->Put({0, 1, 11}, RecordOf(more, {0, 1, 11}), 0.25);
+    EXPECT_EQ(ReadPlan(), before) << "a reader beside it";
+    EXPECT_EQ(DigestOfDir(Dir()), digest);
+  }  // not committed, as after a kill
+  EXPECT_EQ(ReadPlan(), before);
+  EXPECT_EQ(DigestOfDir(Dir()), digest);
+  EXPECT_EQ(Open(Dir(), few)->Stored().size(), 20u);
+  {
+    const auto store = Open(Dir(), more);
+    store->Put({0, 1, 11}, RecordOf(more, {0, 1, 11}), 0.25);
+    store->Commit();
+    EXPECT_TRUE(store->HasGrown());
+    EXPECT_EQ(store->Stored()[10], (sweep::RunId{0, 1, 11}));
+    EXPECT_TRUE(store->FindDamage().empty());
+  }
+  EXPECT_EQ(ReadPlan(), more.CanonicalText());
+  Fly(Dir(), more);
+  EXPECT_EQ(DigestOfDir(Dir()), Fresh(more));
+}
+
+TEST_F(GrowthTest, AFailureAndNetworksGrowThePlanToo) {
+  const sweep::SweepPlan few = Learning({"warmup"}, 10, 8);
+  sweep::SweepPlan more = Learning({"warmup"}, 10, 8);
+  more.stages[2].arms.insert(more.stages[2].arms.begin(), ArmOf("rbs", "rbs"));
+  for (const bool networks : {false, true}) {
+    const TempDir temp;
+    Fly(temp / "run", few);
+    PutNetwork(temp / "run", few, "00ff");
+    const auto store = Open(temp / "run", more);
+    const FlownNetworks there = store->Networks();
+    ASSERT_EQ(there.uses.size(), 1u);
+    EXPECT_EQ(there.uses[0].arm, 1) << "of the plan that it will have";
+    EXPECT_FALSE(store->HasGrown());
+    if (networks) {
+      store->PutNetworks(there);
+    } else {
+      store->PutFailure({2, 0, 3}, {"exception", "broken"});
+      store->Commit();
+    }
+    EXPECT_TRUE(store->HasGrown());
+    EXPECT_EQ(ResultReader(temp / "run").Networks().uses[0].arm, 1);
+    EXPECT_EQ(ResultReader(temp / "run").StoredRecipe().plan_text, more.CanonicalText());
+  }
+}
+
+TEST_F(GrowthTest, ARefusedMergeGrowsNothing) {
+  const sweep::SweepPlan few = Masses({1, 3}, 10), more = Masses({1, 2, 3}, 12);
+  Fly(Dir(), few);
+  Fly(temp_ / "more", more);
+  const std::string before = ReadPlan(), digest = DigestOfDir(Dir()), whole = DigestOfDir(temp_ / "more");
+  std::filesystem::copy(temp_ / "more", temp_ / "damaged");
+  Connection(ResultsIn(temp_ / "damaged"), Connection::Access::kReadWrite)
+      .Execute("UPDATE missions SET total_j = 1 WHERE run = 2 AND mission = 11");
+  EXPECT_TRUE(Contains(UserErrorOf([&] { MergeStores(Dir(), {temp_ / "damaged"}); }), "is damaged"));
+  EXPECT_EQ(ReadPlan(), before);
+  EXPECT_EQ(DigestOfDir(Dir()), digest);
+  EXPECT_EQ(Open(Dir(), few)->Grown(), "");
+  MergeStores(Dir(), {temp_ / "more"});
+  EXPECT_EQ(DigestOfDir(Dir()), whole);
+}
+
 // What is refused stays as it was: the plan of before still flies it.
 TEST_F(GrowthTest, ADamagedRunDoesNotGrow) {
   const sweep::SweepPlan few = Masses({1, 3}, 10), more = Masses({1, 2, 3}, 12);
@@ -148,6 +229,7 @@ TEST_F(GrowthTest, AValueMoreOnAnAxisMovesTheArmsBehindIt) {
   {
     const auto store = Open(Dir(), mixed);
     EXPECT_EQ(store->Grown(), "its arms in another order");
+    store->Grow();
     EXPECT_TRUE(store->FindDamage().empty());
   }
   {
@@ -155,6 +237,8 @@ TEST_F(GrowthTest, AValueMoreOnAnAxisMovesTheArmsBehindIt) {
     EXPECT_EQ(
         store->Grown(),
         "stage online: 12 missions per arm for 10; stage online: arms added: rbs,mass_kg=0.5, rbs,mass_kg=2");
+    EXPECT_EQ(store->Stored().front(), (sweep::RunId{0, 1, 0}));
+    store->Grow();
     EXPECT_EQ(store->Stored().front(), (sweep::RunId{0, 1, 0}));
   }
   ResultReader reader(Dir());
@@ -172,7 +256,8 @@ TEST_F(GrowthTest, WhatHasFailedIsStillTheSameMissions) {
     store->PutFailure({0, 1, 3}, {"exception", "broken"});
     store->Commit();
   }
-  Open(Dir(), Masses({1, 2, 3}, 10));
+  EXPECT_EQ(Open(Dir(), Masses({1, 2, 3}, 10))->Failed(), (std::vector<sweep::RunId>{{0, 2, 3}}));
+  Grow(Dir(), Masses({1, 2, 3}, 10));
   const std::vector<FailedMission> failures = ResultReader(Dir()).Failures();
   ASSERT_EQ(failures.size(), 1u);
   EXPECT_EQ(failures[0].id, (sweep::RunId{0, 2, 3}));
@@ -218,7 +303,7 @@ TEST_F(GrowthTest, OtherCodeOrAnotherWorldIsNotGrowth) {
   recipe.files = {{"mine.yaml", "sha", std::nullopt}};
   recipe.places = {{"worlds/mine.yaml", "mine.yaml"}};
   recipe.code["pixels"] = {"89ab"};
-  ResultStore::Open(Dir(), recipe, LayoutOf(more));
+  ResultStore::Open(Dir(), recipe, LayoutOf(more))->Grow();
   const Recipe grown = ResultReader(Dir()).StoredRecipe();
   EXPECT_EQ(grown.inputs, recipe.inputs);
   EXPECT_EQ(grown.places, recipe.places);
@@ -236,10 +321,9 @@ TEST_F(GrowthTest, AWarmUpThatNetworksHaveLearnedFromStaysAsItIs) {
   EXPECT_TRUE(Contains(Refused(Learning({"another", "warmup"}, 10, 8)),
                        "the networks of stage online have learned from warmup/warmup there and would from "
                        "warmup/another here"));
-  EXPECT_EQ(Open(Dir(), Learning({"warmup", "another"}, 10, 8))->Grown(),
-            "stage warmup: arms added: another");
+  EXPECT_EQ(Grow(Dir(), Learning({"warmup", "another"}, 10, 8)), "stage warmup: arms added: another");
   const sweep::SweepPlan more = Learning({"warmup", "another"}, 10, 16);
-  EXPECT_EQ(Open(Dir(), more)->Grown(), "stage online: 16 missions per arm for 8");
+  EXPECT_EQ(Grow(Dir(), more), "stage online: 16 missions per arm for 8");
   const FlownNetworks networks = ResultReader(Dir()).Networks();
   ASSERT_EQ(networks.uses.size(), 1u);
   EXPECT_EQ(networks.uses[0].stage, 2);
