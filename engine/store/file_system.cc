@@ -8,10 +8,13 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <iterator>
 #include <string_view>
+#include <system_error>
 
 #include "engine/core/check.h"
+#include "engine/store/schema.h"
 
 namespace ed3r::store {
 namespace {
@@ -37,6 +40,19 @@ constexpr std::uint32_t kShared[] = {
 };
 
 }  // namespace
+
+std::string ResultsFileOf(const std::string& dir) {
+  const std::filesystem::path file = std::filesystem::path(dir) / kResultsFile;
+  std::error_code error;
+  if (!std::filesystem::is_symlink(file, error)) return file.string();
+  const std::filesystem::path found = std::filesystem::canonical(file, error);
+  return error ? file.string() : found.string();  // a link to nowhere is refused where it is opened
+}
+
+std::string PlaceOf(const std::string& dir) {
+  const std::string place = std::filesystem::path(ResultsFileOf(dir)).parent_path().string();
+  return place.empty() ? dir : place;
+}
 
 bool IsSharedFileSystem(const std::string& dir) {
   if (const char* asked = std::getenv("ED3R_STORE"); asked != nullptr && *asked != '\0') {

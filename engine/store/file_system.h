@@ -1,9 +1,15 @@
-// Which way of writing a store is safe where it lies.
+// Where a store lies, and which way of writing it is safe there.
 #pragma once
 
 #include <string>
 
 namespace ed3r::store {
+
+// The results file of a run directory: DIR/results.sqlite, or what that is a link to. SQLite keeps its logs beside the latter,
+// and two directories that lead to one file must find one lock.
+std::string ResultsFileOf(const std::string& dir);
+// The directory that it is in.
+std::string PlaceOf(const std::string& dir);
 
 // Whether several machines may see this directory (NFS, Lustre, GPFS, BeeGFS, Ceph, SMB ...), by the type that the kernel
 // tells. ED3R_STORE=local|shared decides in its place. UserError for another value of it, or when the directory is not

@@ -22,8 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kNsPerS = 1'000'000'000;
 
-std::string FileIn(const std::string& dir) { return (fs::path(dir) / kResultsFile).string(); }
-
 // Of the file's header: raised by every transaction that writes outside of WAL mode. -1 where it cannot be read.
 std::int64_t ChangeCounter(const std::string& file) {
   std::array<unsigned char, 4> bytes = {};
@@ -88,14 +86,14 @@ void Write(const std::string& file, const FinishedRun& run) {
 }  // namespace
 
 void RememberFinished(const std::string& dir, const FinishedRun& run) {
-  const std::string file = FileIn(dir);
-  if (IsSharedFileSystem(dir)) return;
-  const DirectoryLock::Attempt alone = DirectoryLock::TryLock(dir);
+  const std::string file = ResultsFileOf(dir);
+  if (IsSharedFileSystem(PlaceOf(dir))) return;
+  const DirectoryLock::Attempt alone = DirectoryLock::TryLock(PlaceOf(dir));
   if (alone.lock && !IsBeingWritten(file)) Write(file, run);
 }
 
 std::optional<FinishedRun> RecallFinished(const std::string& dir, const std::string& made_by) {
-  const std::string file = FileIn(dir);
+  const std::string file = ResultsFileOf(dir);
   if (!fs::exists(file) || IsBeingWritten(file)) return std::nullopt;
   Connection database(file, Connection::Access::kReadOnly);
   if (database.Int("SELECT count(*) FROM pragma_table_info('finished') WHERE name = 'checksum'") == 0)

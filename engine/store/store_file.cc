@@ -101,19 +101,21 @@ StoreFile::StoreFile(const std::string& dir, const Recipe& recipe, const RunLayo
   }
 }
 
+// Where the file itself lies: run directories may link to one file.
 void StoreFile::Lock() {
-  if (!IsSharedFileSystem(dir_)) {
-    DirectoryLock::Attempt attempt = DirectoryLock::TryLock(dir_);
+  const std::string place = PlaceOf(dir_);
+  if (!IsSharedFileSystem(place)) {
+    DirectoryLock::Attempt attempt = DirectoryLock::TryLock(place);
     if (attempt.lock) {
       lock_ = std::make_unique<DirectoryLock>(std::move(*attempt.lock));
       return;
     }
     if (attempt.supported)
-      throw UserError(fmt::format("{}: another ed3r is writing into this directory{}", dir_, Holder(dir_)));
+      throw UserError(fmt::format("{}: another ed3r is writing into this directory{}", place, Holder(dir_)));
   }
   std::string owner;
-  owner_ = OwnerFile::TryTake(dir_, owner);
-  if (!owner_) FailOwned(dir_, owner);
+  owner_ = OwnerFile::TryTake(place, owner);
+  if (!owner_) FailOwned(place, owner);
   rollback_journal_ = true;
 }
 
@@ -189,8 +191,8 @@ StoreFile::~StoreFile() {
 
 void FinishCommit(const std::string& dir) {
   std::string owner;
-  const std::unique_ptr<OwnerFile> alone = OwnerFile::TryTake(dir, owner);
-  if (!alone) FailOwned(dir, owner);
+  const std::unique_ptr<OwnerFile> alone = OwnerFile::TryTake(PlaceOf(dir), owner);
+  if (!alone) FailOwned(PlaceOf(dir), owner);
   Connection database(FileIn(dir), Connection::Access::kReadWrite);
   database.Int("SELECT count(*) FROM sqlite_schema");  // any read rolls back
 }

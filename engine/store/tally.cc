@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "engine/core/check.h"
+#include "engine/store/file_system.h"
 #include "engine/store/part_of_run.h"
 #include "engine/store/records.h"
 #include "engine/store/schema.h"
@@ -24,7 +25,7 @@ double QuietFor_s(const std::string& dir) {
   auto written = fs::file_time_type::min();
   for (const char* suffix : {"", "-wal"}) {
     std::error_code error;
-    const auto time = fs::last_write_time(FileIn(dir) + suffix, error);
+    const auto time = fs::last_write_time(ResultsFileOf(dir) + suffix, error);
     if (!error) written = std::max(written, time);
   }
   return std::chrono::duration<double>(fs::file_time_type::clock::now() - written).count();

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <fstream>
 
+#include "engine/store/finished.h"
 #include "tests/store/store_fixture.h"
 
 namespace ed3r::store {
@@ -200,6 +201,36 @@ TEST(StoreTest, ASecondWriterIsRefused) {
     first->Commit();
   }
   EXPECT_EQ(OpenTest(temp / "run")->Stored().size(), 1u);
+}
+
+TEST(StoreTest, DirectoriesThatLinkToOneFileHaveOneWriter) {
+  const TempDir temp;
+  WriteStore(temp / "run", {{0, 0, 0}});
+  for (const char* link : {"link", "other"}) {
+    std::filesystem::create_directories(temp / link);
+    std::filesystem::create_symlink(ResultsIn(temp / "run"), ResultsIn(temp / link));
+  }
+  for (const char* one : {"link", "run"}) {
+    const auto first = OpenTest(temp / one);
+    for (const char* another : {"run", "link", "other"})
+      EXPECT_TRUE(Contains(UserErrorOf([&] { OpenTest(temp / another); }), ": another ed3r is writing"));
+  }
+  WriteStore(temp / "other", {{0, 0, 1}});
+  EXPECT_EQ(ResultReader(temp / "run").Stored().size(), 2u);
+}
+
+TEST(StoreTest, ARunIsRememberedThroughALink) {
+  const TempDir temp;
+  WriteStore(temp / "run", {{0, 0, 0}});
+  std::filesystem::create_directories(temp / "link");
+  std::filesystem::create_symlink(ResultsIn(temp / "run"), ResultsIn(temp / "link"));
+  {
+    const auto writing = OpenTest(temp / "run");
+    RememberFinished(temp / "link", {"me", 1, "table", ""});
+    EXPECT_FALSE(RecallFinished(temp / "link", "me")) << "somebody is at the file";
+  }
+  RememberFinished(temp / "link", {"me", 1, "table", ""});
+  EXPECT_TRUE(RecallFinished(temp / "run", "me"));
 }
 
 // Forks a child that writes, and kills it when it says so. Returns once it is gone.
