@@ -273,11 +273,13 @@ class ArgumentsTest(unittest.TestCase):
         run = ed3r.fly(self.sweep, too_far, self.root / "far", missions=2)
         code = {word: number for number, word in run.codes["execution"].items()}["quantized"]
         self.assertEqual(set(run.steps("mine")["execution"]), {code})
-        for policy, refusal in ((InTwoStages(np.zeros(5), [0, 0]), r"policy.move: shape \(5,\) is not allowed"),
-                                (InTwoStages(np.zeros((2, 5)), [0]), r"policy.detect: shape \(1,\) is not allowed"),
-                                (InTwoStages(np.zeros((2, 5)), [0, 1.5]), r"policy.detect\[1\]: 1.5 is not allowed"),
-                                (InTwoStages(np.zeros((2, 5)), [3, 0]), r"executions\[0\]: 3 is not allowed")):
-            self.refused(refusal, ed3r.fly, self.sweep, policy, self.root / "stages", missions=2)
+        for commands, executions, refusal in (
+                (np.zeros(5), [1, 1], r"policy.move: shape \(5,\) is not allowed"),
+                (np.zeros((2, 5)), [0], r"policy.detect: shape \(1,\) is not allowed"),
+                (np.zeros((2, 5)), [0, 1.5], r"policy.detect\[1\]: 1.5 is not allowed"),
+                (np.zeros((2, 5)), [3, 0], r"executions\[0\]: 3 is not allowed")):
+            policy = InTwoStages(commands, executions)
+            self.refused(refusal, ed3r.fly, self.sweep, policy, self.root / f"stages {executions}", missions=2)
 
     def test_messages_speak_of_arguments(self):
         out = self.root / "two policies"

@@ -131,8 +131,12 @@ def fly(sweep: str | os.PathLike[str], policy: Policy | Mapping[str, Policy] | N
     one policy to each arm of strategy external.
 
     Results go to `out` (results/runs/SWEEP) as ordinary missions: reports, pairing by scenario and comparisons know no
-    difference. A second call continues; by another policy it is refused. `version` tells policies apart; without it the
-    SHA-256 of the policy's source does, so give one where it depends on more than its source (weights, a closure).
+    difference. A second call continues; by another policy it is refused. `version` tells policies apart; without it a SHA-256
+    does, of the policy's source and of what it decides by when fly is called: arguments bound by functools.partial, defaults,
+    what it closes over, the globals that it names, and an object's attributes. These may be numbers, texts, None, numpy arrays
+    of numbers, your own functions, classes, objects and enums, and tuples, lists, sets and dicts of them. A policy that holds
+    anything else (a tensor, a random generator, an object of a library or with __slots__), or whose source cannot be read, is
+    refused without a version. Not looked at is what it takes out of modules (settings.speed) and files: give one there.
     """
 
 def save_network(path: str | os.PathLike[str], agent: str, weights: Sequence[ArrayLike], biases: Sequence[ArrayLike], *,

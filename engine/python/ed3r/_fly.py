@@ -1,36 +1,16 @@
 """Missions of Python policies, stored as ordinary arms."""
 
 import difflib
-import hashlib
-import inspect
 import os
 
 import numpy as np
 
 from . import _arguments, _core
 from ._core import UserError
+from ._identity import identity_of
 from ._run import Run
 
 _INFOS = ("mission", "timestep", "hovers", "ranges", "scs", "total_j", "battery_j")
-
-
-def _identity(policy, version):
-    """What tells this policy from others: a run is continued by the same one alone."""
-    if version is not None:
-        return str(version)
-    if policy is None:
-        return "none"
-    policies = policy if isinstance(policy, dict) else {"": policy}
-    sources = []
-    for name, decide in sorted(policies.items()):
-        if not (inspect.isfunction(decide) or inspect.isclass(decide)):
-            decide = type(decide)
-        try:
-            sources.append(f"{name}\n{inspect.getsource(decide)}")
-        except (OSError, TypeError):
-            raise UserError("version: is needed for a policy whose source cannot be read; allowed: any text that is "
-                            "another one whenever the policy decides otherwise") from None
-    return "source " + hashlib.sha256("\n".join(sources).encode()).hexdigest()[:16]
 
 
 def _two_stages(policy):
@@ -83,6 +63,6 @@ def fly(sweep, policy=None, out=None, *, seed=None, missions=None, settings=(), 
     name, arms = _core.sweep_outline(request)
     policies = _check_policy(policy, arms)
     out = os.path.join("results", "runs", name) if out is None else _arguments.path("out", out)
-    _core.fly(request, out, _arguments.path("cache", cache), _identity(policy, version), num_envs, threads,
+    _core.fly(request, out, _arguments.path("cache", cache), identity_of(policy, version), num_envs, threads,
               lambda fleet: _drive(fleet, policies[fleet.arm]))
     return Run(out)
