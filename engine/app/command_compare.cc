@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <future>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
 #include "studies/metrics/number_text.h"
 #include "studies/report/compare_page.h"
@@ -39,6 +39,14 @@ struct Options {
 std::string LabelOf(const std::string& dir) {
   const fs::path path = fs::absolute(dir).lexically_normal();
   return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+std::string NewLabel(const std::string& dir, const std::vector<std::string>& labels) {
+  std::string label = LabelOf(dir);
+  if (std::find(labels.begin(), labels.end(), label) != labels.end())
+    throw UserError(
+        fmt::format("{}: two of the runs are in folders called '{}'; their names must differ", dir, label));
+  return label;
 }
 
 // What keeps claims from being judged, a line for each run; none where all may be.
@@ -103,8 +111,7 @@ nlohmann::ordered_json JsonOf(const variants::VariantStudy& study, const std::ve
 // What made the runs, by their labels.
 nlohmann::ordered_json ManifestOf(const std::vector<report::ComparedRun>& runs) {
   nlohmann::ordered_json manifest = nlohmann::ordered_json::object();
-  for (const report::ComparedRun& run : runs)
-    manifest[run.label] = report::ManifestJson(report::ReadProvenance(run.dir, run.digest));
+  for (const report::ComparedRun& run : runs) manifest[run.label] = report::ManifestJson(run.provenance);
   return manifest;
 }
 
@@ -124,24 +131,35 @@ void WritePage(const std::vector<report::ComparedRun>& runs, const variants::Var
                 "<p>This page is a program: it needs scripts. The same is in compare.txt.</p>"));
 }
 
+void WriteFolder(const std::string& text, const std::vector<report::ComparedRun>& runs,
+                 const variants::VariantStudy& study, const std::vector<std::string>& notes,
+                 const Options& options) {
+  const fs::path out(options.out);
+  MakeFolder(out);
+  WriteFile(out / "compare.txt", text);
+  WriteFile(out / "differences.csv", variants::DifferenceCsv(study));
+  WriteFile(out / "verdicts.csv", variants::VariantVerdictCsv(study));
+  WriteFile(out / "manifest.json", ManifestOf(runs).dump(2) + "\n");
+  WritePage(runs, study, notes, options);
+}
+
 int Compare(const Options& options) {
   if (options.dirs.size() < 2)
     throw UserError(fmt::format("compare: {} is one run; at least two are needed", options.dirs.front()));
   std::vector<metrics::ArmData> arms;
   std::vector<report::ComparedRun> runs;
-  std::vector<std::string> labels, other_contents;
+  std::vector<std::unique_ptr<store::GatheredShards>> stores;
+  std::vector<std::string> labels, other_contents, shard_notes;
   std::set<std::uint64_t> seeds;
   Fingerprints first_inputs;
   report::RunDepartures departures;
   for (const std::string& dir : options.dirs) {
-    const std::string label = LabelOf(dir);
-    if (std::find(labels.begin(), labels.end(), label) != labels.end())
-      throw UserError(
-          fmt::format("{}: two of the runs are in folders called '{}'; their names must differ", dir, label));
-    labels.push_back(label);
-    store::ResultReader reader(dir);
-    std::future<std::string> digest = report::CheckWhole(dir);
-    const report::RunResults run = report::LoadRun(dir);
+    const std::string label = labels.emplace_back(NewLabel(dir, labels));
+    const store::GatheredShards& gathered =
+        *stores.emplace_back(std::make_unique<store::GatheredShards>(dir));
+    shard_notes.insert(shard_notes.end(), gathered.notes().begin(), gathered.notes().end());
+    store::ResultReader reader(gathered.dir());
+    auto [run, provenance] = report::LoadWhole(gathered.dir(), dir);
     seeds.insert(reader.Layout().seed);
     const Fingerprints inputs = reader.StoredRecipe().inputs;
     if (labels.size() == 1) first_inputs = inputs;
@@ -151,7 +169,7 @@ int Compare(const Options& options) {
       throw UserError(fmt::format("{}: has variants of its own; 'ed3r report {}' compares them", dir, dir));
     departures[label] = report::ReadDepartures(reader)[""];
     for (metrics::ArmData& arm : variants::AsVariant(run.arms, label)) arms.push_back(std::move(arm));
-    runs.push_back({label, dir, digest.get(), run});
+    runs.push_back({label, gathered.dir(), std::move(run), std::move(provenance)});
   }
   std::vector<std::string> notes = DepartureLines(departures, labels, options.claims);
   variants::VariantStudy study = variants::CompareVariants(
@@ -168,16 +186,10 @@ int Compare(const Options& options) {
   }
   notes.insert(notes.begin(), other_contents.begin(), other_contents.end());
   const std::string text = Wrapped(notes) + variants::VariantText(study);
-  if (!options.out.empty()) {
-    const fs::path out(options.out);
-    MakeFolder(out);
-    WriteFile(out / "compare.txt", text);
-    WriteFile(out / "differences.csv", variants::DifferenceCsv(study));
-    WriteFile(out / "verdicts.csv", variants::VariantVerdictCsv(study));
-    WriteFile(out / "manifest.json", ManifestOf(runs).dump(2) + "\n");
-    WritePage(runs, study, notes, options);
-  }
+  if (!options.out.empty()) WriteFolder(text, runs, study, notes, options);
   fmt::print("{}", options.json ? JsonOf(study, departure_lines, other_contents).dump(2) + "\n" : text);
+  FlushOutput();
+  TellNotes(shard_notes);
   return kDone;
 }
 
@@ -189,7 +201,7 @@ Command AddCompare(Program& program) {
       "compare",
       "Runs of the same arms, each compared with the first: differences paired by scenario, and the paper's "
       "claims that are judged otherwise");
-  parser.Option("DIR", options->dirs, "Run directories").Required();
+  parser.Option("DIR", options->dirs, "Run directories; shards in them count, merged or not").Required();
   parser
       .Option("--out", options->out,
               "Folder for index.html, compare.txt, differences.csv, verdicts.csv and manifest.json")

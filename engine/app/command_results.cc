@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <future>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -153,13 +152,14 @@ std::string NamesOfSeveralStages(const report::RunResults& results) {
 int MakeReportOf(const ReportOptions& options) {
   const store::GatheredShards run(options.dir);
   store::ResultReader reader(run.dir());
-  std::future<std::string> digest = report::CheckWhole(run.dir());
-  const report::RunResults results = report::LoadRun(run.dir());
+  const report::WholeRun whole =
+      report::LoadWhole(run.dir(), options.dir);  // of a damaged run nothing is written
+  const report::RunResults& results = whole.results;
   const report::Report report = report::MakeReport(
       results, report::ReadDepartures(reader),
       options.claims ? report::Judging::kEverything : report::Judging::kWhatThePaperFlew, options.variant);
   report::FolderOptions folder{.dir = run.dir(),
-                               .digest = digest.get(),  // nothing of a damaged run is written
+                               .provenance = whole.provenance,
                                .out = options.out,
                                .figures = !options.no_figures,
                                .force = options.force,

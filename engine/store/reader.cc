@@ -173,12 +173,13 @@ StoredMission ResultReader::LoadMission(const sweep::RunId& id) {
   return *loaded;
 }
 
-std::string ResultReader::CheckWhole() {
+std::string ResultReader::CheckWhole(const RecordVisitor& visit) {
   const Transaction moment(database_, Transaction::Kind::kRead);
   ResultDigest digest(*this);
   const std::vector<DamagedMission> damage =
       ed3r::store::FindDamage(database_, layout_, [&](const MissionCursor& mission) {
         digest.Add(mission.Checked(), mission.record(), mission.checksum());
+        if (visit) visit(mission.Checked(), mission.record());
       });
   if (!damage.empty()) throw UserError(DamageText(database_.file(), damage.front()));
   return digest.Hex();

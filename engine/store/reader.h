@@ -1,5 +1,6 @@
 // Reading results: for studies, status, digest and merge. Everything comes in canonical order: by stage, arm,
-// mission, then k. A reader may be open while another process writes: each call sees one moment of the file.
+// mission, then k. A reader may be open while another process writes: each call sees one moment of the file, and all calls
+// the same one while a Moment() lives.
 //
 // Threads: one reader is used by one thread at a time; open one per thread.
 // Errors: UserError when there is no store, or a damaged one. Every mission that is read is compared with its checksum;
@@ -55,6 +56,10 @@ class ResultReader {
   explicit ResultReader(const std::string& dir);
 
   const std::string& dir() const { return dir_; }
+
+  // Must not outlive the reader.
+  [[nodiscard]] Transaction Moment() { return {database_, Transaction::Kind::kRead}; }
+
   const RunLayout& Layout() const { return layout_; }
   const Recipe& StoredRecipe() const { return recipe_; }  // without notes and files: see Sessions()
   std::vector<InputFile> Files();
@@ -97,8 +102,9 @@ class ResultReader {
   StoredMission LoadMission(const sweep::RunId& id);
 
   // The digest (digest.h) of all that is stored, of which everything has been compared: UserError names the first damaged
-  // mission.
-  std::string CheckWhole();
+  // mission. `visit` is called for each, with its timesteps, and must not call this reader.
+  using RecordVisitor = std::function<void(const sweep::RunId&, const mission::MissionRecord&)>;
+  std::string CheckWhole(const RecordVisitor& visit = {});
 
   // Every mission that does not match its checksums or is not in the plan. Reads everything.
   std::vector<DamagedMission> FindDamage();

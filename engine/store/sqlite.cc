@@ -246,14 +246,16 @@ bool Statement::IsNull(int column) const {
   return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
 }
 
-Transaction::Transaction(Connection& connection, Kind kind) : connection_(connection) {
+Transaction::Transaction(Connection& connection, Kind kind)
+    : connection_(connection), within_(kind == Kind::kRead && connection.InTransaction()) {
+  if (within_) return;
   connection_.Execute(kind == Kind::kWrite ? "BEGIN IMMEDIATE" : "BEGIN");
 }
 
 Transaction::~Transaction() {
   // SQLite rolls back by itself after some errors; then there is nothing left to do.
   try {
-    if (connection_.InTransaction()) connection_.Execute("ROLLBACK");
+    if (!within_ && connection_.InTransaction()) connection_.Execute("ROLLBACK");
   } catch (...) {  // the connection is closed next, which rolls back as well
   }
 }

@@ -85,7 +85,8 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 
-// Commits when told so, else rolls back. A read transaction sees one moment of the file.
+// Commits when told so, else rolls back. A read transaction sees one moment of the file; one within another sees that
+// other's.
 class Transaction {
  public:
   enum class Kind { kRead, kWrite };
@@ -97,6 +98,7 @@ class Transaction {
 
  private:
   Connection& connection_;
+  bool within_ = false;
 };
 
 }  // namespace ed3r::store

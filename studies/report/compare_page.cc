@@ -33,7 +33,8 @@ void Add(const ComparedRun& run, const std::string& letter, Together& together) 
   for (const metrics::ArmData& arm : run.results.arms) report.told.push_back(metrics::ComputeMetrics(arm));
   PageMissions missions = ReadPageMissions(report, run.results, run.dir);
   for (std::size_t a = 0; a < report.told.size(); ++a) {
-    together.origins.push_back({letter, run.dir, report.told[a].stage + '/' + report.told[a].name});
+    together.origins.push_back(
+        {letter, run.provenance.dir, report.told[a].stage + '/' + report.told[a].name});
     report.told[a].stage = missions.arms[a].stage = run.label + '/' + report.told[a].stage;
   }
   std::move(report.told.begin(), report.told.end(), std::back_inserter(together.metrics));
@@ -111,7 +112,7 @@ Json ComparePageData(const std::vector<ComparedRun>& runs, const variants::Varia
   report.name = Names(runs);
   report.told = together.metrics;
   if (!study.verdicts.empty()) report.claims = study.verdicts.front();
-  const Provenance provenance = ReadProvenance(runs.front().dir, runs.front().digest);
+  const Provenance& provenance = runs.front().provenance;
   Json data = MakePageData({.report = report,
                             .provenance = provenance,
                             .missions = together.missions,

@@ -5,14 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "studies/report/provenance.h"
 #include "studies/report/report.h"
 
 namespace ed3r::report {
 
 struct ComparedRun {
-  std::string label, dir;
-  std::string digest;  // of what it holds
+  std::string label;
+  std::string dir;     // of its store
   RunResults results;  // without variants
+  Provenance provenance;
 };
 
 // The document of page_data.h. Arms are keyed LABEL/STAGE/NAME; the paper's values stand beside each; claims are judged by the

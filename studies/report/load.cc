@@ -1,9 +1,11 @@
 #include "studies/report/load.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "engine/store/reader.h"
 #include "studies/figures/run_source.h"
@@ -16,13 +18,19 @@ struct LoadedMissions {
   std::vector<mission::MissionRecord> records;
   std::int64_t end =
       0;  // after the last one's number: where it is more than there are, some between are missing
+
+  // In the order of their numbers.
+  void Add(int number, const mission::MissionRecord& record) {
+    records.push_back(record);
+    records.back().steps = {};
+    end = number + 1;
+  }
 };
 
 LoadedMissions LoadMissions(store::ResultReader& reader, int stage, int arm) {
   LoadedMissions missions;
   reader.ForEachMission(stage, arm, store::Steps::kSkip, [&](const store::StoredMission& mission) {
-    missions.records.push_back(mission.record);
-    missions.end = mission.id.mission + 1;
+    missions.Add(mission.id.mission, mission.record);
   });
   return missions;
 }
@@ -52,16 +60,15 @@ bool KnownWellEnough(const metrics::ArmData& arm, const std::optional<sweep::Pre
          HalfWidthOf(arm, flown, precision->metric) <= precision->half_width;
 }
 
-}  // namespace
+using MissionsOf = std::function<LoadedMissions(int stage, int arm)>;
 
-RunResults LoadRun(const std::string& dir) {
-  store::ResultReader reader(dir);
+RunResults ResultsOf(store::ResultReader& reader, const std::vector<store::ArmStatus>& status,
+                     const MissionsOf& missions) {
   const store::RunLayout& layout = reader.Layout();
   RunResults results{layout.name, {}};
   if (store::MixedCode(reader.StoredRecipe().code))
     results.mixed_code = store::CodeText(reader.StoredRecipe().code);
   results.unchecked = !reader.Tables().checked();
-  const std::vector<store::ArmStatus> status = reader.Status();
   const std::vector<figures::ArmPlan> plans = figures::ReadArmPlans(reader.StoredRecipe().plan_text);
   for (int s = 0; s < static_cast<int>(layout.stages.size()); ++s) {
     const store::RunLayout::Stage& stage = layout.stages[s];
@@ -70,12 +77,11 @@ RunResults LoadRun(const std::string& dir) {
                                    [&](const figures::ArmPlan& p) { return p.stage == stage.name; });
     const std::optional<sweep::Precision> precision = plan == plans.end() ? std::nullopt : plan->precision;
     for (int a = 0; a < static_cast<int>(stage.arms.size()); ++a) {
-      LoadedMissions loaded = LoadMissions(reader, s, a);
+      LoadedMissions loaded = missions(s, a);
       metrics::ArmData arm{stage.name, stage.arms[a].name, std::move(loaded.records)};
       arm.world = WorldOf(plans, reader.StoredRecipe().inputs, arm);
       const auto flown = static_cast<std::int64_t>(arm.missions.size());
-      // Counted from the missions at hand: more may have come in since the status was read.
-      arm.failed = static_cast<int>(std::min(status[layout.RunIndex(s, a)].failed, stage.missions - flown));
+      arm.failed = static_cast<int>(status[layout.RunIndex(s, a)].failed);
       const std::int64_t between = loaded.end - flown - arm.failed;
       if (precision && between > 0)
         arm.missing = static_cast<int>(between);
@@ -87,8 +93,29 @@ RunResults LoadRun(const std::string& dir) {
   return results;
 }
 
-std::future<std::string> CheckWhole(const std::string& dir) {
-  return std::async(std::launch::async, [dir] { return store::ResultReader(dir).CheckWhole(); });
+}  // namespace
+
+RunResults LoadRun(const std::string& dir) {
+  store::ResultReader reader(dir);
+  const store::Transaction moment = reader.Moment();
+  return ResultsOf(reader, reader.Status(),
+                   [&](int stage, int arm) { return LoadMissions(reader, stage, arm); });
+}
+
+WholeRun LoadWhole(const std::string& dir, const std::string& called) {
+  store::ResultReader reader(dir);
+  const store::Transaction moment = reader.Moment();
+  const store::RunLayout& layout = reader.Layout();
+  std::map<std::int64_t, LoadedMissions> by_run;
+  const std::string digest =
+      reader.CheckWhole([&](const sweep::RunId& id, const mission::MissionRecord& record) {
+        by_run[layout.RunIndex(id)].Add(id.mission, record);
+      });
+  Provenance provenance = ReadProvenance(reader, digest, called);
+  RunResults results = ResultsOf(reader, provenance.status, [&](int stage, int arm) {
+    return std::move(by_run[layout.RunIndex(stage, arm)]);
+  });
+  return {std::move(results), std::move(provenance)};
 }
 
 double HalfWidth(const std::string& dir, int stage, const std::string& arm, int missions,

@@ -1,5 +1,7 @@
 #include "studies/report/provenance.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
@@ -48,12 +50,24 @@ std::string QuestionOf(const std::map<std::string, std::string>& notes) {
   return first == std::string::npos || !IsUtf8(line) ? "" : line.substr(first);
 }
 
+std::vector<std::pair<std::string, std::string>> BrokenMissions(store::ResultReader& reader) {
+  std::vector<std::pair<std::string, std::string>> broken;
+  for (const store::FailedMission& failure : reader.Failures()) {
+    const store::RunLayout::Stage& stage =
+        reader.Layout().stages.at(static_cast<std::size_t>(failure.id.stage));
+    broken.emplace_back(
+        fmt::format("{}/{}/{}", stage.name, stage.arms.at(static_cast<std::size_t>(failure.id.arm)).name,
+                    failure.id.mission),
+        failure.message);
+  }
+  return broken;
+}
+
 }  // namespace
 
-Provenance ReadProvenance(const std::string& dir, const std::string& digest) {
-  store::ResultReader reader(dir);
+Provenance ReadProvenance(store::ResultReader& reader, const std::string& digest, const std::string& called) {
   Provenance provenance;
-  provenance.dir = dir;
+  provenance.dir = called;
   provenance.sweep = reader.Layout().name;
   provenance.seed = std::to_string(reader.Layout().seed);
   provenance.code_version = store::CodeText(reader.StoredRecipe().code);
@@ -71,11 +85,13 @@ Provenance ReadProvenance(const std::string& dir, const std::string& digest) {
   if (!provenance.sessions.empty()) {
     const std::map<std::string, std::string>& notes = provenance.sessions.back().notes;
     provenance.sweep_file = SweepFileOf(notes);
-    provenance.command = CommandOf(notes, dir);
+    provenance.command = CommandOf(notes, called);
     provenance.question = QuestionOf(notes);
     provenance.commit = Note(notes, "commit");
   }
-  for (const store::ArmStatus& arm : reader.Status()) {
+  provenance.status = reader.Status();
+  provenance.broken = BrokenMissions(reader);
+  for (const store::ArmStatus& arm : provenance.status) {
     provenance.planned += arm.planned, provenance.stored += arm.done, provenance.failed += arm.failed;
     provenance.simulated_h += arm.simulated_s / 3600, provenance.wall_h += arm.wall_s / 3600;
   }

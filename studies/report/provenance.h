@@ -4,7 +4,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "engine/store/reader.h"
 
 namespace ed3r::report {
 
@@ -19,6 +22,9 @@ struct Provenance {
   std::string time_by_phase;  // of the last session that was flown with --profile; "" where none
   std::string commit;         // of the last of `sessions`; "unknown" outside a checkout
   std::string digest;         // of what is stored
+  std::vector<store::ArmStatus> status;
+  std::vector<std::pair<std::string, std::string>>
+      broken;  // missions that threw inside the program, with their own words
   std::int64_t planned = 0, stored = 0, failed = 0;
   double simulated_h = 0;                     // flown time of all missions
   double wall_h = 0;                          // spent on them, summed over threads
@@ -31,8 +37,8 @@ struct Provenance {
   std::vector<Session> sessions;
 };
 
-// Reads the store in `dir`, whose `digest` is known (ResultReader::CheckWhole). Throws UserError where there is no store.
-Provenance ReadProvenance(const std::string& dir, const std::string& digest);
+// Of a store whose `digest` is known (ResultReader::CheckWhole); `called`: the run's name for people.
+Provenance ReadProvenance(store::ResultReader& reader, const std::string& digest, const std::string& called);
 
 // What made the results: {"sweep", "command", "seed", "code", "commit", "digest", "missions", "failed", "simulated_h",
 // "wall_h", "inputs", "machine": the last session's notes}. Without hosts and times of day.

@@ -102,23 +102,11 @@ void RemoveOldPictures(const fs::path& folder) {
   if (data.is_object() && data.contains("figures")) RemovePictures(folder, data["figures"]);
 }
 
-// Missions that threw inside the program, with their own words.
-nlohmann::ordered_json BrokenMissions(store::ResultReader& reader) {
-  nlohmann::ordered_json broken = nlohmann::ordered_json::array();
-  for (const store::FailedMission& failure : reader.Failures()) {
-    const store::RunLayout::Stage& stage =
-        reader.Layout().stages.at(static_cast<std::size_t>(failure.id.stage));
-    broken.push_back({{"mission", fmt::format("{}/{}/{}", stage.name,
-                                              stage.arms.at(static_cast<std::size_t>(failure.id.arm)).name,
-                                              failure.id.mission)},
-                      {"message", failure.message}});
-  }
-  return broken;
-}
-
 std::string InteractivePage(const WebBundle& bundle, const PageInputs& plain, const RunResults& results,
                             const nlohmann::ordered_json& figures, const FolderOptions& options) {
-  store::ResultReader reader(options.dir);
+  nlohmann::ordered_json broken = nlohmann::ordered_json::array();
+  for (const auto& [mission, message] : plain.provenance.broken)
+    broken.push_back({{"mission", mission}, {"message", message}});
   const PageMissions missions = ReadPageMissions(plain.report, results, options.dir);
   const nlohmann::ordered_json data = MakePageData({.report = plain.report,
                                                     .provenance = plain.provenance,
@@ -127,7 +115,7 @@ std::string InteractivePage(const WebBundle& bundle, const PageInputs& plain, co
                                                     .question = plain.provenance.question,
                                                     .report_command = plain.report_command,
                                                     .figures_note = plain.figures_note,
-                                                    .broken = BrokenMissions(reader),
+                                                    .broken = broken,
                                                     .viewers = options.viewers,
                                                     .viewers_note = options.viewers_note});
   return SelfContainedPage(plain.report.name + " – ED³R report", bundle, data, ReportContent(plain));
@@ -139,7 +127,7 @@ FolderResult WriteReportFolder(const Report& report, const RunResults& results,
                                const FolderOptions& options) {
   const fs::path base(options.out), figures = base / "figures";
   if (!options.force) CheckFolder(base);
-  const Provenance provenance = ReadProvenance(options.dir, options.digest);
+  const Provenance& provenance = options.provenance;
   MakeFolder(base);
   for (const fs::path& folder : {base, base / "tables", figures}) RemoveLeftovers(folder);
   // First: a report that did not come to its end is known as one.

@@ -3,17 +3,18 @@
 
 #include <string>
 
+#include "studies/report/provenance.h"
 #include "studies/report/report.h"
 
 namespace ed3r::report {
 
 struct FolderOptions {
-  std::string dir;      // of the run
-  std::string digest;   // of what it holds (ResultReader::CheckWhole)
-  std::string out;      // the report's folder, made where it is missing
-  bool figures = true;  // draw them; their data are written in any case
-  bool force = false;   // write into a folder that holds other things than a report
-  std::string command;  // that made it, for the page
+  std::string dir;        // of the run's store
+  Provenance provenance;  // of the results (LoadWhole)
+  std::string out;        // the report's folder, made where it is missing
+  bool figures = true;    // draw them; their data are written in any case
+  bool force = false;     // write into a folder that holds other things than a report
+  std::string command;    // that made it, for the page
   // Mission viewers that the caller leaves in the folder: {"mission", "what", "file"}.
   nlohmann::ordered_json viewers = nlohmann::ordered_json::array();
   std::string viewers_note = {};  // why there are none, though they were wanted

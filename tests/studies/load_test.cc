@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <map>
+#include <thread>
+
 #include "tests/store/store_fixture.h"
 #include "tests/studies/five_missions.h"
 
@@ -73,6 +77,48 @@ TEST(LoadRunTest, AGapOfARunWithAPrecisionIsMissing) {
   };
   EXPECT_EQ(missing({0, 1, 2, 3}), 0);
   EXPECT_EQ(missing({0, 4}), 3);
+}
+
+// A run that goes on while it is read: numbers, counts and digest are of one moment.
+TEST(LoadWholeTest, AllIsOfOneMoment) {
+  const store::TempDir temp;
+  store::RunLayout layout = Layout();
+  layout.stages[2].missions = 150;
+  std::map<std::int64_t, std::string> digests;  // by missions
+  std::atomic<bool> ended = false;
+  const auto put = [&](store::ResultStore& store, int number) {
+    mission::MissionRecord mission = Mission(number % 5);
+    mission.scenario = 5000 + number;
+    store.Put({2, 1, number}, mission, 0.5);
+    store.Commit();
+  };
+  {
+    const auto store = store::ResultStore::Open(temp / "before", store::TestRecipe(), layout);
+    for (int number = 0; number < 150; ++number) {
+      put(*store, number);
+      digests[number + 1] = store::DigestOfDir(temp / "before");
+    }
+  }
+  const auto store = store::ResultStore::Open(temp / "run", store::TestRecipe(), layout);
+  put(*store, 0);
+  std::thread writer([&] {
+    for (int number = 1; number < 150; ++number) put(*store, number);
+    ended = true;
+  });
+  int looks = 0;
+  for (; !ended || looks == 0; ++looks) {
+    const report::WholeRun whole = report::LoadWhole(temp / "run", "called");
+    const auto missions = static_cast<std::int64_t>(whole.results.arms[2].missions.size());
+    EXPECT_EQ(whole.provenance.stored, missions);
+    EXPECT_EQ(whole.results.arms[2].missing, 150 - missions);
+    EXPECT_EQ(whole.provenance.digest, digests.at(missions));
+    EXPECT_EQ(whole.provenance.dir, "called");
+  }
+  writer.join();
+  const report::WholeRun whole = report::LoadWhole(temp / "run", "called");
+  const report::RunResults again = report::LoadRun(temp / "run");
+  ASSERT_EQ(whole.results.arms[2].missions.size(), again.arms[2].missions.size());
+  EXPECT_TRUE(whole.results.arms[2].missions[7].steps.empty());
 }
 
 TEST(LoadRunTest, ReportOfAStoreIsTheReportOfItsMissions) {
