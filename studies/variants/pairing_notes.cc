@@ -37,6 +37,14 @@ std::size_t InCommon(const metrics::ArmData& a, const metrics::ArmData& b) {
       [&](const mission::MissionRecord& mission) { return scenarios.contains(mission.scenario); }));
 }
 
+// With other seeds nothing but the numbers is.
+std::string CommonText(std::size_t common, std::size_t here, std::size_t there, bool same_draws) {
+  const std::string what = same_draws ? "scenario" : "scenario number";
+  if (common == 0) return fmt::format("no {} is in common: nothing is compared", what);
+  return fmt::format("{} {}{} in common, of {} and {}", common, what, common == 1 ? " is" : "s are", here,
+                     there);
+}
+
 }  // namespace
 
 std::vector<std::string> PairingNotes(const LabelledRun& first, const LabelledRun& other, bool same_draws) {
@@ -44,7 +52,6 @@ std::vector<std::string> PairingNotes(const LabelledRun& first, const LabelledRu
   for (const auto& [has, lacks] : {std::pair(&first, &other), std::pair(&other, &first)})
     if (const std::vector<std::string> names = OnlyIn(has->arms, lacks->arms); !names.empty())
       notes.push_back(fmt::format("only {} has {}: not compared", has->label, fmt::join(names, ", ")));
-  if (!same_draws) return notes;
   std::map<std::string, std::vector<std::string>> partly;  // by how many are in common
   std::vector<std::string> elsewhere;
   for (const metrics::ArmData& arm : first.arms) {
@@ -52,12 +59,9 @@ std::vector<std::string> PairingNotes(const LabelledRun& first, const LabelledRu
     if (beside == nullptr || arm.missions.empty() || beside->missions.empty()) continue;
     const std::size_t common = InCommon(arm, *beside);
     if (common < std::max(arm.missions.size(), beside->missions.size()))
-      partly[common == 0 ? std::string("no scenario is in common: nothing is compared")
-                         : fmt::format("{} {} in common, of {} and {}", common,
-                                       common == 1 ? "scenario is" : "scenarios are", arm.missions.size(),
-                                       beside->missions.size())]
-          .push_back(arm.name);
-    if (common > 0 && !SameScenarios(arm, *beside)) elsewhere.push_back(arm.name);
+      partly[CommonText(common, arm.missions.size(), beside->missions.size(), same_draws)].push_back(
+          arm.name);
+    if (same_draws && common > 0 && !SameScenarios(arm, *beside)) elsewhere.push_back(arm.name);
   }
   for (const auto& [what, names] : partly)
     notes.push_back(fmt::format("{} and {}, {}: {}", first.label, other.label, fmt::join(names, ", "), what));

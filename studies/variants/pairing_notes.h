@@ -14,8 +14,8 @@ struct LabelledRun {
   std::span<const metrics::ArmData> arms;
 };
 
-// Arms that only one of the runs has; and, where both draw the same scenarios (one seed), arms of which not all scenarios are
-// in common, none are, or whose scenarios are others under the same numbers. Empty where nothing is left out.
+// Arms that only one of the runs has, and arms of which not all scenario numbers are in common, or none are; where both draw
+// the same scenarios (one seed), also arms whose scenarios are others under the same numbers. Empty where nothing is left out.
 std::vector<std::string> PairingNotes(const LabelledRun& first, const LabelledRun& other, bool same_draws);
 
 // Which variants did not meet the scenarios of the first one (ARM@VARIANT): they begin elsewhere, or in another world.
