@@ -16,6 +16,7 @@
 #include "engine/core/parse_number.h"
 #include "engine/rfnn/model_file.h"
 #include "engine/rfnn/onnx_network.h"
+#include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
 #include "engine/sweep/plan_text.h"
 #include "studies/export/export_tables.h"
@@ -79,19 +80,18 @@ void WriteNetworkIndex(store::ResultReader& reader, const store::FlownNetworks& 
              Counted(static_cast<std::int64_t>(flown.uses.size()), "row"));
 }
 
-void ExportNetworks(store::ResultReader& reader, const std::filesystem::path& folder) {
+void ExportNetworks(store::ResultReader& reader, const std::string& dir,
+                    const std::filesystem::path& folder) {
   const store::FlownNetworks flown = reader.Networks();
-  if (flown.files.empty())
-    throw UserError(fmt::format("{}: --networks: no trained network flew here", reader.dir()));
+  if (flown.files.empty()) throw UserError(fmt::format("{}: --networks: no trained network flew here", dir));
   MakeFolder(folder);
   const std::map<std::string, std::string> names = FileNames(flown);
   std::set<std::string> done;
   for (const store::NetworkUse& use : flown.uses) {
     if (!done.insert(use.sha256).second) continue;
     const store::NetworkFile& file = flown.files.at(use.sha256);
-    const rfnn::Model model =
-        rfnn::OpenModel(file.model, fmt::format("{}: network '{}'", reader.dir(), file.name),
-                        use.agent == "rc" ? rfnn::kRcNetwork : rfnn::kRobotNetwork);
+    const rfnn::Model model = rfnn::OpenModel(file.model, fmt::format("{}: network '{}'", dir, file.name),
+                                              use.agent == "rc" ? rfnn::kRcNetwork : rfnn::kRobotNetwork);
     const std::filesystem::path path = folder / names.at(use.sha256);
     WriteFile(path, rfnn::OnnxBytes(model));
     fmt::print("{}: {}\n", path.string(), file.name);
@@ -102,7 +102,8 @@ void ExportNetworks(store::ResultReader& reader, const std::filesystem::path& fo
 int Export(const Options& options) {
   if (!options.csv && !options.numpy && !options.networks)
     throw UserError("ed3r export: nothing to write; allowed: --csv, --numpy, --networks, or several");
-  store::ResultReader reader(options.dir);
+  const store::GatheredShards run(options.dir);
+  store::ResultReader reader(run.dir());
   const std::filesystem::path folder = options.out.empty() ? std::filesystem::path(options.dir) / "export"
                                                            : std::filesystem::path(options.out);
   const auto tables = [&](exports::ExportFormat format) {
@@ -111,7 +112,11 @@ int Export(const Options& options) {
   };
   if (options.csv) tables(exports::ExportFormat::kCsv);
   if (options.numpy) tables(exports::ExportFormat::kNumpy);
-  if (options.networks) ExportNetworks(reader, folder);
+  if (options.networks) ExportNetworks(reader, options.dir, folder);
+  FlushOutput();
+  TellNotes(run.notes());
+  if (!options.csv && !options.numpy) return kDone;
+  for (const std::string& note : exports::TimestepNotes(reader)) Tell("note: {}: {}", options.dir, note);
   return kDone;
 }
 
@@ -121,7 +126,7 @@ Command AddExport(Program& program) {
   auto options = std::make_shared<Options>();
   CommandLine parser = program.AddCommand(
       "export", "Missions and timesteps as tables for other tools, networks as ONNX files");
-  parser.Option("DIR", options->dir, "Run directory").Required();
+  parser.Option("DIR", options->dir, "Run directory; shards in it count, merged or not").Required();
   parser.Flag("--csv", options->csv, "missions.csv and timesteps.csv");
   parser.Flag("--numpy", options->numpy, "missions.npy and timesteps.npy: structured arrays");
   parser.Flag(

@@ -14,6 +14,8 @@
 #include "engine/app/commands.h"
 #include "engine/core/file.h"
 #include "engine/core/interrupt.h"
+#include "engine/store/gathered_shards.h"
+#include "engine/store/tally.h"
 #include "studies/metrics/metrics.h"
 #include "studies/report/load.h"
 #include "studies/report/page_parts.h"
@@ -89,7 +91,24 @@ std::string StatusLook::Left() const {
                               : fmt::format("about {:.1f} h", left_s / kHour_s);
 }
 
+namespace {
+
+// Counted where they are: joining the shards for intervals would take longer than a look may.
+StatusLook LookAtShards(const std::vector<std::string>& stores) {
+  StatusLook look;
+  const store::ResultReader first(stores.front());
+  look.name = first.Layout().name;
+  store::Tally tally(first.StoredRecipe(), first.Layout());
+  for (const std::string& store : stores) tally.Add(store);
+  look.arms = tally.Arms();
+  return look;
+}
+
+}  // namespace
+
 StatusLook LookAt(const std::string& dir) {
+  const std::vector<std::string> stores = store::StoresThatAdd(dir).dirs;
+  if (stores.size() > 1 || (stores.size() == 1 && stores.front() != dir)) return LookAtShards(stores);
   StatusLook look;
   store::ResultReader reader(dir);
   look.name = reader.Layout().name;

@@ -28,6 +28,7 @@ struct StatusLook {
   std::string Left() const;
 };
 
+// Shards that are not merged count, too; nothing is `known` of their arms then.
 StatusLook LookAt(const std::string& dir);
 
 // For a terminal; every line ends with a line feed.

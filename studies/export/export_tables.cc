@@ -193,4 +193,25 @@ std::vector<ExportedTable> ExportTables(store::ResultReader& reader, ExportForma
   return written;
 }
 
+std::vector<std::string> TimestepNotes(store::ResultReader& reader) {
+  std::vector<std::string> notes;
+  const std::vector<store::RunLayout::Stage>& stages = reader.Layout().stages;
+  for (int s = 0; s < static_cast<int>(stages.size()); ++s) {
+    const sweep::KeptTimesteps rule = reader.Tables().KeptOf(s);
+    if (rule == sweep::KeptTimesteps::kAll) continue;
+    const store::RunLayout::Stage& stage = stages[static_cast<std::size_t>(s)];
+    std::int64_t missions = 0, kept = 0;
+    for (int a = 0; a < static_cast<int>(stage.arms.size()); ++a)
+      reader.ForEachMission(s, a, store::Steps::kSkip, [&](const store::StoredMission& mission) {
+        ++missions, kept += mission.keeps_timesteps ? 1 : 0;
+      });
+    if (kept < missions)
+      notes.push_back(fmt::format(
+          "stage {}: timesteps of {} of {} missions were kept (store: {{timesteps: {}}}): what is "
+          "computed from its timesteps is of those alone; missions has all",
+          stage.name, kept, missions, NameOf(rule)));
+  }
+  return notes;
+}
+
 }  // namespace ed3r::exports

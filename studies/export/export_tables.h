@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "engine/store/reader.h"
@@ -27,5 +28,9 @@ struct ExportedTable {
 // Every mission is compared with its checksum. Throws UserError.
 std::vector<ExportedTable> ExportTables(store::ResultReader& reader, ExportFormat format,
                                         const std::filesystem::path& folder);
+
+// A line for each stage whose sweep keeps the timesteps of some missions alone: what is computed from its timesteps is not of
+// the stage.
+std::vector<std::string> TimestepNotes(store::ResultReader& reader);
 
 }  // namespace ed3r::exports

@@ -196,6 +196,26 @@ TEST_F(PiecesTest, APlanTellsHowFarShardsEndApart) {
   EXPECT_FALSE(nlohmann::json::parse(Ed3r("plan --json " + sweep).out)["stages"][0].contains("shards"));
 }
 
+// Half merged: every command that reads results reads the rest, too.
+TEST_F(PiecesTest, PartsThatAreNotMergedCountEverywhere) {
+  const std::string sweep = Write("name: half\nmissions: 4\nset: {strategy: rbs, " + kWorld + "}");
+  const std::string whole = (scratch_ / "whole").string();
+  ExpectDone(Ed3r(fmt::format("run {} --quiet --out {}", sweep, whole)));
+  for (const char* shard : {"1/2", "2/2"}) ExpectDone(Piece(sweep, "online", shard));
+  ExpectDone(Ed3r(fmt::format("merge {0} {0}/shards/online/1", Run())));
+  const CommandResult exported = Ed3r("export --csv " + Run());
+  ExpectDone(exported);
+  EXPECT_EQ(exported.err, "");
+  ExpectDone(Ed3r("export --csv " + whole));
+  EXPECT_EQ(ReadAll(Run() + "/export/missions.csv"), ReadAll(whole + "/export/missions.csv"));
+  const CommandResult compared = Ed3r(fmt::format("compare --json {} {}", whole, Run()));
+  ExpectDone(compared);
+  EXPECT_EQ(nlohmann::json::parse(compared.out)["differences"][0]["pairs"], 4);
+  const CommandResult watched = Ed3r("status --watch " + Run());
+  ExpectDone(watched);
+  EXPECT_TRUE(Says(watched.out, "half: 4 of 4 missions, nothing missing")) << watched.out;
+}
+
 // A run that is complete, beside parts of a plan that has grown since.
 TEST_F(PiecesTest, PartsOfAGrownPlanAreNotLeftOutInSilence) {
   const std::string sweep = Write("name: grows\nmissions: 4\nset: {strategy: rbs, " + kWorld + "}");

@@ -174,6 +174,8 @@ TEST(KeptTimestepsTest, ARunWithoutTimestepsIsTheSameRun) {
   const CommandResult exported =
       Ed3r(fmt::format("export {} --csv --out {}", none, (scratch / "e").string()));
   EXPECT_EQ(exported.status, 0) << exported.err;
+  EXPECT_TRUE(Contains(exported.err, "stage online: timesteps of 0 of 4 missions were kept")) << exported.err;
+  EXPECT_EQ(Ed3r(fmt::format("export {} --csv --out {}", all, (scratch / "f").string())).err, "");
 
   const CommandResult other = Ed3r(fmt::format("run {} --missions 4 --quiet --out {}", kRbs, none));
   EXPECT_EQ(other.status, 2);
