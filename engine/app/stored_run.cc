@@ -67,6 +67,18 @@ std::string UnknownMission(const std::string& mission, const std::string& arm, b
   return fmt::format("{}: {}; the arms are {}", mission, problem, fmt::join(ArmNames(plan, true), ", "));
 }
 
+// A mission of the first stage would be taken for one of another.
+void CheckOneStage(const std::string& mission, const std::string& arm, const sweep::SweepPlan& plan) {
+  std::vector<std::string> found;
+  for (const sweep::Stage& stage : plan.stages)
+    for (const sweep::Arm& candidate : stage.arms)
+      if (stage.kind == sweep::StageKind::kFly && candidate.name == arm)
+        found.push_back(stage.name + "/" + arm);
+  if (found.size() > 1)
+    throw UserError(fmt::format("{}: arm {} is of several stages; give STAGE/ARM/NUMBER, with one of {}",
+                                mission, arm, fmt::join(found, ", ")));
+}
+
 }  // namespace
 
 std::map<std::string, std::string> NotesOf(const SweepArguments& arguments) {
@@ -95,8 +107,10 @@ sweep::RunId StoredRun::Find(const std::string& mission) const {
     const char* const end = mission.data() + mission.size();
     if (std::from_chars(mission.data() + slash + 1, end, number).ptr != end) number = -1;
   }
+  CheckOneStage(mission, arm_text, plan_);
   for (std::size_t s = 0; s < plan_.stages.size(); ++s) {
     const sweep::Stage& stage = plan_.stages[s];
+    if (stage.kind != sweep::StageKind::kFly) continue;
     for (std::size_t a = 0; a < stage.arms.size(); ++a) {
       const std::string& name = stage.arms[a].name;
       if (arm_text != name && arm_text != stage.name + "/" + name) continue;

@@ -21,7 +21,8 @@ class StoredRun {
   // other code than that which flew.
   StoredRun(const std::string& dir, const std::string& cache_dir);
 
-  // "ARM/NUMBER" or "STAGE/ARM/NUMBER", numbers from 0. Throws UserError that names the nearest arm or lists them.
+  // "ARM/NUMBER", of an arm that one stage alone has, or "STAGE/ARM/NUMBER", numbers from 0. Throws UserError that names the
+  // nearest arm or lists them.
   sweep::RunId Find(const std::string& mission) const;
 
   // With the networks that flew, where the mission's strategy asks any; a run of format 1 keeps none, so that they are

@@ -149,6 +149,7 @@ void BindResults(py::module_& module) {
   py::class_<RunReader>(module, "RunReader")
       .def(py::init<const std::string&>(), py::call_guard<py::gil_scoped_release>())
       .def_property_readonly("name", &RunReader::Name)
+      .def_property_readonly("notes", &RunReader::Notes)
       .def("arms", &RunReader::Arms)
       .def("missions", [](RunReader& reader, const std::string& arm) { return Table(reader.Missions(arm)); })
       .def("steps", [](RunReader& reader, const std::string& arm) { return Table(reader.Timesteps(arm)); })

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <type_traits>
+#include <utility>
 
 #include "engine/core/check.h"
 #include "engine/core/suggest.h"
@@ -61,11 +62,25 @@ std::vector<sweep::RunId> RunReader::Selected(const std::string& arm) const {
     }
   if (selected.empty()) {
     const std::string nearest = NearestWord(arm, names);
-    throw UserError(fmt::format("{}: no arm '{}'; the arms are {}{}", reader_.dir(), arm,
-                                fmt::join(names, ", "),
+    throw UserError(fmt::format("{}: no arm '{}'; the arms are {}{}", dir_, arm, fmt::join(names, ", "),
                                 nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest)));
   }
+  if (!arm.empty()) CheckOneStage(arm, selected);
   return selected;
+}
+
+void RunReader::CheckOneStage(const std::string& arm, std::vector<sweep::RunId>& selected) const {
+  const auto& stages = reader_.Layout().stages;
+  const auto stage_of = [&](const sweep::RunId& id) -> const store::RunLayout::Stage& {
+    return stages[static_cast<std::size_t>(id.stage)];
+  };
+  if (selected.size() > 1)  // what was trained is no arm that flew
+    std::erase_if(selected, [&](const sweep::RunId& id) { return stage_of(id).missions == 0; });
+  if (selected.size() < 2) return;
+  std::vector<std::string> names;
+  for (const sweep::RunId& id : selected) names.push_back(stage_of(id).name + "/" + arm);
+  throw UserError(fmt::format("{}: arm '{}' is of several stages; give STAGE/ARM: {}", dir_, arm,
+                              fmt::join(names, ", ")));
 }
 
 std::vector<ResultColumn> RunReader::Missions(const std::string& arm) {

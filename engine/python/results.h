@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
 
 namespace ed3r::python {
@@ -23,15 +24,17 @@ struct ArmCount {
   std::int64_t planned = 0, done = 0, failed = 0;
 };
 
-// Reads a run directory; every mission is compared with its checksum. Throws UserError.
+// Reads a run directory; every mission is compared with its checksum. Shards that are not merged are joined when it is opened.
+// Throws UserError.
 class RunReader {
  public:
-  explicit RunReader(const std::string& dir) : reader_(dir) {}
+  explicit RunReader(const std::string& dir) : dir_(dir), run_(dir), reader_(run_.dir()) {}
 
   const std::string& Name() const { return reader_.Layout().name; }
+  const std::vector<std::string>& Notes() const { return run_.notes(); }  // on shards that are not counted
   std::vector<ArmCount> Arms();
 
-  // Of the arm "ARM" or "STAGE/ARM", or of all ("") in plan order. The columns "arm" (index into Arms()) and "mission",
+  // Of the arm "ARM", which one stage alone may have, or "STAGE/ARM", or of all ("") in plan order. The columns "arm" (index into Arms()) and "mission",
   // then those of MissionRecord or TimestepRecord.
   std::vector<ResultColumn> Missions(const std::string& arm);
   std::vector<ResultColumn> Timesteps(const std::string& arm);
@@ -41,7 +44,11 @@ class RunReader {
 
  private:
   std::vector<sweep::RunId> Selected(const std::string& arm) const;
+  // Takes stages that fly nothing out. UserError where several are left.
+  void CheckOneStage(const std::string& arm, std::vector<sweep::RunId>& selected) const;
 
+  std::string dir_;
+  store::GatheredShards run_;
   store::ResultReader reader_;
 };
 

@@ -220,6 +220,26 @@ TEST(RunTest, AnotherSweepInTheSameFolderIsRefused) {
   EXPECT_EQ(Digest(scratch / "run"), digest);
 }
 
+TEST(RunTest, AnArmOfTwoStagesIsNamedWithItsStage) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch / "two.yaml")
+      << "name: two\nset: {strategy: rbs, mission.world: " << kSweeps
+      << "worlds/ridges.yaml}\nstages:\n"
+         "  - {name: a, missions: 1, sweep: {list: [{name: x}, {name: z}]}}\n"
+         "  - {name: b, missions: 1, sweep: {list: [{name: x}, {name: y}]}}\n";
+  const std::string dir = (scratch / "run").string();
+  ASSERT_EQ(Ed3r(fmt::format("run {} --quiet --out {}", (scratch / "two.yaml").string(), dir)).status, 0);
+  const CommandResult either = Ed3r("replay " + dir + " x/0");
+  EXPECT_EQ(either.status, 2);
+  EXPECT_NE(either.err.find("x/0: arm x is of several stages; give STAGE/ARM/NUMBER, with one of a/x, b/x\n"),
+            std::string::npos)
+      << either.err;
+  for (const char* mission : {" b/x/0", " z/0"}) {
+    const CommandResult one = Ed3r("replay " + dir + mission);
+    EXPECT_EQ(one.status, 0) << one.err;
+  }
+}
+
 TEST(RunTest, ARunGrowsIntoWhatAFreshOneOfThatSizeIs) {
   const ScratchFolder scratch;
   const auto sweep = [&](const char* name, const char* masses) {

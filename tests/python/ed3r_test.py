@@ -250,6 +250,28 @@ class PythonTest(unittest.TestCase):
             np.testing.assert_array_equal(rewards[:len(stored)], stored)
             self.assertLessEqual(len(rewards) - len(stored), 1)
 
+    def test_an_arm_of_two_stages_is_named_with_its_stage(self):
+        sweep = self.root / "two.yaml"
+        world = SOURCE / "sweeps" / "worlds" / "ridges.yaml"
+        sweep.write_text(f"name: two\nset: {{strategy: rbs, mission.world: {world}}}\nstages:\n"
+                         "  - {name: a, missions: 1, sweep: {list: [{name: x}, {name: z}]}}\n"
+                         "  - {name: b, missions: 2, sweep: {list: [{name: x}, {name: y}]}}\n", encoding="utf-8")
+        subprocess.run([os.environ["ED3R"], "run", sweep, "--quiet", "--out", self.root / "two"], check=True)
+        run = ed3r.Run(self.root / "two")
+        with self.assertRaisesRegex(ed3r.UserError, "give STAGE/ARM: a/x, b/x"):
+            run.missions("x")
+        self.assertEqual(list(run.missions("b/x")["stage"]), ["b", "b"])
+        self.assertEqual(list(run.missions("z")["arm"]), ["z"])
+        self.assertEqual(list(run.missions()["stage"]), ["a", "a", "b", "b", "b", "b"])
+
+    def test_shards_count_as_in_the_program(self):
+        out = self.root / "sharded"
+        for part in (1, 2):
+            subprocess.run([os.environ["ED3R"], "run", SOURCE / "sweeps" / "rbs.yaml", "--missions", "4", "--quiet", "--stage", "online",
+                            "--shard", f"{part}/2", "--out", out / f"shards/online/{part}"], check=True)
+        told = subprocess.run([os.environ["ED3R"], "digest", out], check=True, capture_output=True, text=True)
+        self.assertEqual(ed3r.Run(out).digest(), told.stdout.strip())
+
     def test_columns_have_units_and_a_place_in_the_stub(self):
         run = ed3r.fly(self.sweep, turning, self.root / "columns", missions=2)
         stub = (pathlib.Path(ed3r.__file__).parent / "__init__.pyi").read_text(encoding="utf-8")

@@ -153,7 +153,8 @@ def save_network(path: str | os.PathLike[str], agent: str, weights: Sequence[Arr
     """
 
 class Run:
-    """A run directory; every mission that is read is compared with its checksum."""
+    """A run directory; every mission that is read is compared with its checksum. Shards in it that are not merged count as they
+    are when it is opened; a warning tells of those that do not."""
 
     codes: dict[str, dict[int, str]]
     """What stored codes stand for: {"outcome": {0: "success", ...}, "execution": ..., "motion_rule": ...}."""
@@ -164,9 +165,9 @@ class Run:
 
     def __init__(self, dir: str | os.PathLike[str]) -> None: ...
     def missions(self, arm: str = "", *, frame: bool = False) -> Any:
-        """One row a mission, of one arm ("ARM", "STAGE/ARM") or all: {column: array (n,)}, or a pandas.DataFrame of n rows.
+        """One row a mission, of one arm ("ARM" where one stage has it, "STAGE/ARM") or all: {column: array (n,)}, or a pandas.DataFrame of n rows.
 
-        text      arm
+        text      stage, arm
         int64     mission (its number in the arm); scenario (missions of one number meet the same fire, start, radio and CPU in
                   every arm); site, base_station; network (training seed, -1 without); site_known, base_station_known (1: seen
                   by the warm-up); outcome (codes["outcome"]); timesteps; contact_steps (physics steps with a collision); halts
@@ -180,7 +181,7 @@ class Run:
     def steps(self, arm: str = "", *, frame: bool = False) -> Any:
         """One row a timestep, likewise; missions["timesteps"] rows of each mission that kept them, in order.
 
-        text      arm
+        text      stage, arm
         int64     mission; k (from 1); motion_rule (codes["motion_rule"]); band (of the last score: 0 none, 1
                   reliable, 2 intermediate, 3 persisting, 4 low); halted (1: by the LiDARs); contact_steps; execution (codes["execution"]); execution_random (1: drawn);
                   fire_in_view (1: yes)

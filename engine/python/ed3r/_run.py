@@ -1,6 +1,7 @@
 """Results of a run directory as arrays."""
 
 import json
+import warnings
 
 import numpy as np
 
@@ -15,6 +16,8 @@ class Run:
     def __init__(self, dir):
         self.dir = _arguments.path("dir", dir)
         self._reader = _core.RunReader(self.dir)
+        for note in self._reader.notes:
+            warnings.warn(note, stacklevel=2)
 
     @property
     def name(self):
@@ -38,8 +41,9 @@ class Run:
         return self._reader.digest()
 
     def _table(self, columns, frame):
-        names = np.array([a.arm for a in self._reader.arms()])
-        columns["arm"] = names[columns["arm"]]
+        arms, of = self._reader.arms(), columns.pop("arm")
+        stages, names = np.array([a.stage for a in arms]), np.array([a.arm for a in arms])
+        columns = {"stage": stages[of], "arm": names[of], **columns}
         if not frame:
             return columns
         import pandas
