@@ -8,6 +8,7 @@
 #include "engine/app/stored_run.h"
 #include "engine/core/check.h"
 #include "engine/perception/view.h"
+#include "engine/sweep/plan_text.h"
 
 namespace ed3r::app {
 namespace {
@@ -37,10 +38,38 @@ void AddMission(const store::StoredMission& mission, const world::Scene& scene, 
   }
 }
 
+// What decides how a camera sees, and what the profile that is fitted stands on.
+bool IsOfLooking(const std::string& key) {
+  return key.starts_with("perception.") || key.starts_with("sensing.camera_") || key == "sensing.period_s";
+}
+
+// One profile is of one way to look: a mixture of several is none of them.
+void CheckLooksAlike(const std::string& dir, const std::string& plan_text) {
+  const sweep::WrittenPlan plan = sweep::ReadPlanText(plan_text);
+  const sweep::WrittenPlan::Arm* first = nullptr;
+  for (const sweep::WrittenPlan::Stage& stage : plan.stages)
+    for (const sweep::WrittenPlan::Arm& arm : stage.arms) {
+      const auto tier = arm.settings.find("perception.tier");
+      if (stage.kind != sweep::StageKind::kFly || tier == arm.settings.end() || tier->second != "pixels")
+        continue;
+      if (first == nullptr) first = &arm;
+      for (const auto& [key, value] : arm.settings)
+        if (const auto other = first->settings.find(key);
+            IsOfLooking(key) && (other == first->settings.end() || other->second != value))
+          throw UserError(
+              fmt::format("{}: arms {} and {} do not look alike ({} is {} and {}), and a profile is of one "
+                          "way to look; fly "
+                          "those that do as a run of their own",
+                          dir, first->name, arm.name, key,
+                          other == first->settings.end() ? "unknown" : other->second, value));
+    }
+}
+
 }  // namespace
 
 PerceptionLooks LooksOfRun(const std::string& dir) {
   StoredRun run(dir, "");
+  CheckLooksAlike(dir, run.Reader().StoredRecipe().plan_text);
   const sweep::SweepPlan& plan = run.Plan();
   PerceptionLooks found;
   for (int s = 0; s < static_cast<int>(plan.stages.size()); ++s) {

@@ -10,10 +10,11 @@ namespace ed3r::app {
 
 struct PerceptionLooks {
   std::vector<perception_fit::PeriodLook> looks;
-  PerceptionConfig configured;  // of the first arm that looked at pixels
+  PerceptionConfig configured;  // of the arms that looked at pixels
 };
 
-// Throws UserError where the run cannot be read again or none of its arms looked at pixels.
+// Throws UserError where the run cannot be read again, none of its arms looked at pixels, or several that did were given other
+// parameters of perception or camera.
 PerceptionLooks LooksOfRun(const std::string& dir);
 
 }  // namespace ed3r::app

@@ -44,6 +44,22 @@ TEST(PixelsTest, ReplayFliesTheSameAndWritesWhatTheCameraSaw) {
       << beyond.err;
 }
 
+TEST(PixelsTest, AProfileIsFittedToOneWayToLook) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch / "mixed.yaml")
+      << "name: mixed\nmissions: 1\nset: {strategy: rbs, robot.battery_mah: 400, perception.tier: pixels, "
+         "mission.world: " ED3R_SOURCE_DIR
+         "/sweeps/worlds/ridges.yaml}\n"
+         "sweep: {perception.render.noise: [0, 40]}\n";
+  const std::string out = (scratch / "run").string();
+  ASSERT_EQ(Ed3r(fmt::format("run {} --quiet --out {}", (scratch / "mixed.yaml").string(), out)).status, 0);
+  const CommandResult fit = Ed3r("fit --perception " + out);
+  EXPECT_EQ(fit.status, 2);
+  EXPECT_NE(fit.err.find("do not look alike (perception.render.noise is 0 and 40)"), std::string::npos)
+      << fit.err;
+  EXPECT_EQ(std::count(fit.err.begin(), fit.err.end(), '\n'), 1) << fit.err;
+}
+
 TEST(PixelsTest, ADetectorThatIsNoneIsRefusedBeforeAnythingFlies) {
   const ScratchFolder scratch;
   const std::string out = (scratch / "run").string();
