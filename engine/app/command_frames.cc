@@ -123,8 +123,13 @@ class DataSet {
             fmt::format("--wrong-by: of {} views only {} are wrong by {}", looks, kept, options_.wrong_by));
       if (WriteView(looks, kept, frames, labels)) ++kept;
     }
+    // Of an interrupted overwriting nothing can be read: labels are missing, or the manifest is of the set before.
+    fs::remove(out / "labels.csv");
+    const std::string of_frames = frames.Close();
     WriteFile(out / "labels.csv", labels);
-    WriteManifest(out, looks, frames.Close());
+    Sha256 of_labels;
+    of_labels.Update(labels);
+    WriteManifest(out, looks, of_frames, of_labels.Hex());
     fmt::print(
         "{}: frames.npy ({} views x {} frames, {} x {} px), labels.csv, manifest.json; fire or smoke in {} "
         "views\n",
@@ -185,7 +190,8 @@ class DataSet {
     perception::WriteFrame(renderer.Sense(pose, 1, first, kLarge).frames, 0, stem + "_large.png");
   }
 
-  void WriteManifest(const fs::path& out, int looks, const std::string& sha256) const {
+  void WriteManifest(const fs::path& out, int looks, const std::string& of_frames,
+                     const std::string& of_labels) const {
     nlohmann::ordered_json manifest;
     manifest["seed"] = options_.seed;
     manifest["views"] = options_.views;
@@ -205,7 +211,8 @@ class DataSet {
     manifest["settings"] = options_.settings;
     const CodeVersion code = ThisCode();
     manifest["code"] = {{"source_hash", code.source_hash}, {"commit", code.commit}, {"dirty", code.dirty}};
-    manifest["frames_npy_sha256"] = sha256;
+    manifest["frames_npy_sha256"] = of_frames;
+    manifest["labels_csv_sha256"] = of_labels;
     WriteFile(out / "manifest.json", manifest.dump(2) + "\n");
   }
 

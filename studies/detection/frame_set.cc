@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <utility>
 
 #include "engine/core/check.h"
 #include "engine/core/csv_table.h"
 #include "engine/core/file.h"
+#include "engine/core/sha256.h"
 #include "engine/core/utf8.h"
 #include "engine/world/picture_file.h"
 #include "studies/detection/npy.h"
@@ -53,6 +55,29 @@ bool IsPicture(const fs::path& path) {
   return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
 }
 
+// Against what the set's manifest says of the file, where it says anything: sets of others have none.
+void CheckOfManifest(const nlohmann::json& manifest, const char* key, const std::string& file,
+                     const std::string& bytes) {
+  const auto said = manifest.is_object() ? manifest.find(key) : manifest.end();
+  if (said == manifest.end()) return;
+  Sha256 sha;
+  sha.Update(bytes);
+  if (const std::string found = sha.Hex(); !said->is_string() || *said != found)
+    throw UserError(fmt::format(
+        "{}: not the file of the manifest.json beside it (SHA-256 {}, there {}); render the set again, "
+        "or take the manifest away where the file was changed on purpose",
+        file, found, said->dump()));
+}
+
+nlohmann::json ReadManifest(const std::string& folder) {
+  const std::string path = (fs::path(folder) / "manifest.json").string();
+  if (!fs::exists(path)) return nlohmann::json::object();
+  nlohmann::json manifest = nlohmann::json::parse(ReadFile(path, kMaxTextBytes), nullptr, false);
+  if (manifest.is_discarded())
+    throw UserError(fmt::format("{}: no JSON; take it away to read the set without", path));
+  return manifest;
+}
+
 }  // namespace
 
 bool IsFrameSet(const std::string& folder) { return fs::exists(fs::path(folder) / "frames.npy"); }
@@ -60,7 +85,11 @@ bool IsFrameSet(const std::string& folder) { return fs::exists(fs::path(folder) 
 FrameSet ReadFrameSet(const std::string& folder) {
   const std::string csv = (fs::path(folder) / "labels.csv").string();
   const std::string npy = (fs::path(folder) / "frames.npy").string();
-  FrameSet set{.frames = ParseNpy(ReadFile(npy, kMaxFrameBytes), npy), .labels = ReadLabels(csv)};
+  const nlohmann::json manifest = ReadManifest(folder);
+  CheckOfManifest(manifest, "labels_csv_sha256", csv, ReadFile(csv, kMaxFrameBytes));
+  std::string bytes = ReadFile(npy, kMaxFrameBytes);
+  CheckOfManifest(manifest, "frames_npy_sha256", npy, bytes);
+  FrameSet set{.frames = ParseNpy(std::move(bytes), npy), .labels = ReadLabels(csv)};
   if (set.labels.size() != static_cast<std::size_t>(set.frames.frames))
     throw UserError(fmt::format("{}: {} rows for {} frames", csv, set.labels.size(), set.frames.frames));
   return set;

@@ -27,7 +27,8 @@ struct FrameSet {
 // Whether the folder holds such a data set.
 bool IsFrameSet(const std::string& folder);
 
-// Throws UserError that names the file (and line) for files that are missing, of another layout, or disagree.
+// Throws UserError that names the file (and line) for files that are missing, of another layout, or disagree, also with the
+// hashes in the set's manifest.json where there is one.
 FrameSet ReadFrameSet(const std::string& folder);
 
 // What there is to look at: the pictures in a folder (PNG, JPEG, by their endings; sorted by name), or the one file.

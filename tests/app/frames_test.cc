@@ -53,6 +53,9 @@ TEST(FramesCommand, WritesAnArrayLabelsAndAManifestThatAgree) {
   Sha256 hash;
   hash.Update(array);
   EXPECT_EQ(manifest["frames_npy_sha256"], hash.Hex());
+  Sha256 of_labels;
+  of_labels.Update(ReadAll(out / "labels.csv"));
+  EXPECT_EQ(manifest["labels_csv_sha256"], of_labels.Hex());
   EXPECT_EQ(manifest["seed"], 11);
   EXPECT_EQ(manifest["worlds"][0]["name"], "training b");
 

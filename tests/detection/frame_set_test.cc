@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "engine/core/check.h"
+#include "engine/core/sha256.h"
 
 namespace ed3r::detection {
 namespace {
@@ -72,6 +73,28 @@ TEST_F(FrameSetTest, RefusesFilesThatDoNotFit) {
   ExpectRefusal("2 rows for 3 frames");
   std::ofstream(folder_ / "frames.npy") << "nothing";
   ExpectRefusal("no NPY");
+}
+
+TEST_F(FrameSetTest, RefusesFilesOfAnotherManifest) {
+  const auto hash = [&](const char* file) {
+    std::ifstream in(folder_ / file, std::ios::binary);
+    Sha256 sha;
+    sha.Update(std::string(std::istreambuf_iterator<char>(in), {}));
+    return sha.Hex();
+  };
+  std::ofstream(folder_ / "manifest.json") << "{\"frames_npy_sha256\": \"" << hash("frames.npy")
+                                           << "\", \"labels_csv_sha256\": \"" << hash("labels.csv") << "\"}";
+  EXPECT_EQ(ReadFrameSet(folder_).frames.frames, 2);
+  WriteLabels(
+      "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label\n"
+      "0,7,0,a,x,12.5,0,0,0,0\n1,7,1,a,x,12.5,3,4,0.25,1\n");
+  ExpectRefusal("labels.csv: not the file of the manifest.json beside it");
+  std::ofstream(folder_ / "manifest.json") << "{\"frames_npy_sha256\": \"00\"}";
+  ExpectRefusal("frames.npy: not the file of the manifest.json beside it");
+  std::ofstream(folder_ / "manifest.json") << "{}";
+  EXPECT_EQ(ReadFrameSet(folder_).labels.size(), 2u) << "a manifest of somebody else's";
+  std::ofstream(folder_ / "manifest.json") << "none";
+  ExpectRefusal("manifest.json: no JSON");
 }
 
 TEST_F(FrameSetTest, RefusesLabelsWithoutAColumn) {
