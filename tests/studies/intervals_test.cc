@@ -87,6 +87,17 @@ TEST(RatioIntervalTest, LinearisesTheVariance) {
   ExpectInterval(statistics::RatioInterval(part, whole), 2 - half, 2 + half, 1e-7);
 }
 
+// Student's t with one degree of freedom is 12.7062047 at 97.5 %; Wilson's interval of 0.5 in one trial with it is
+// (1 +- t / sqrt(1 + t^2)) / 2.
+TEST(IntervalTest, TwoAreEnough) {
+  ExpectInterval(statistics::MeanInterval(Sample{1, 3}), 2 - 12.7062047, 2 + 12.7062047, 1e-6);
+  ExpectInterval(statistics::RatioInterval(Sample{1, 3}, Sample{1, 1}), 2 - 12.7062047, 2 + 12.7062047, 1e-6);
+  ExpectInterval(statistics::RateInterval(1, 2), 0.0945312, 0.9054688, 1e-6);
+  const double half = 0.5 * 12.7062047 / std::sqrt(1 + 12.7062047 * 12.7062047);
+  ExpectInterval(statistics::ShareInterval(Sample{0, 1}, Sample{1, 1}, statistics::ShareUnit::kMission),
+                 0.5 - half, 0.5 + half, 1e-7);
+}
+
 TEST(RatioIntervalTest, EqualWholesGiveTheMean) {
   const Sample part = {3, 1, 4, 1, 5}, whole(5, 1.0);
   const statistics::Interval mean = statistics::MeanInterval(part),
