@@ -199,6 +199,10 @@ TEST(EnergyTest, AFastDescentWithCheapRotorsTakesNothing) {
               1e-9);
   EXPECT_EQ(power.climb_w, -power.induced_w);
   EXPECT_EQ(power.TotalW(), 0.0);
+  const MomentumPower<> dragging =
+      MomentumPowersW(MomentumParameters<>{0.8, 0.5, 0.0, 0.1, 0.0}, 3.0, 0.0, -12.0, {0.8, 9.0}, kDiscM2);
+  EXPECT_GT(dragging.profile_w, 1.0);
+  EXPECT_EQ(dragging.climb_w, -(dragging.induced_w + dragging.profile_w));
 }
 
 TEST(EnergyTest, ATimestepOfNothingCostsNothing) {

@@ -174,6 +174,7 @@ TEST(QuantileTest, IntervalIsTwoOrderStatistics) {
   ExpectInterval(ranks(100, 85), 78, 93, 0);
   ExpectInterval(ranks(23, 85), 16, 23, 0);
   EXPECT_FALSE(ranks(22, 85).Exists());
+  EXPECT_FALSE(ranks(22, 15).Exists());
 }
 
 TEST(IntervalTest, FewerThanTwoMissionsGiveNone) {
