@@ -160,6 +160,7 @@ int Compare(const Options& options) {
     shard_notes.insert(shard_notes.end(), gathered.notes().begin(), gathered.notes().end());
     store::ResultReader reader(gathered.dir());
     auto [run, provenance] = report::LoadWhole(gathered.dir(), dir);
+    reader.CheckPlan();
     seeds.insert(reader.Layout().seed);
     const Fingerprints inputs = reader.StoredRecipe().inputs;
     if (labels.size() == 1) first_inputs = inputs;

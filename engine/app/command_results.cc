@@ -154,6 +154,7 @@ int MakeReportOf(const ReportOptions& options) {
   store::ResultReader reader(run.dir());
   const report::WholeRun whole =
       report::LoadWhole(run.dir(), options.dir);  // of a damaged run nothing is written
+  reader.CheckPlan();                             // what it departs from is of the same plan
   const report::RunResults& results = whole.results;
   const report::Report report = report::MakeReport(
       results, report::ReadDepartures(reader),

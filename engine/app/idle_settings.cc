@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 #include <string_view>
 
 #include "engine/config/parameters.h"
@@ -17,6 +18,7 @@ struct Rule {
   std::vector<std::string_view> begins;  // of keys; a whole key is the beginning of itself
   std::function<bool(const Config&)> acts;
   const char* why;
+  bool in_each_arm = false;  // said of the arms that do not heed it, though others do
 };
 
 bool BillsAirspeeds(const Config& config) { return config.energy.model == PowerModel::kMomentum; }
@@ -27,7 +29,8 @@ const std::vector<Rule>& Rules() {
        BillsAirspeeds,
        "wind is flown in and not billed: the paper's powers are those of still air (energy.model momentum "
        "bills "
-       "airspeeds)"},
+       "airspeeds)",
+       true},
       {{"energy.momentum_efficiency", "energy.induced_factor", "energy.profile_share", "energy.interference",
         "energy.drag_area_m2"},
        BillsAirspeeds,
@@ -54,20 +57,26 @@ bool Begins(const Rule& rule, std::string_view key) {
 }  // namespace
 
 std::vector<std::string> IdleSettings(const sweep::SweepPlan& plan) {
-  std::vector<const Config*> arms;
+  std::vector<const sweep::Arm*> all;
   for (const sweep::Stage& stage : plan.stages)
-    for (const sweep::Arm& arm : stage.arms) arms.push_back(&arm.config);
+    for (const sweep::Arm& arm : stage.arms) all.push_back(&arm);
   std::vector<std::string> sentences;
   for (const Rule& rule : Rules()) {
-    if (std::any_of(arms.begin(), arms.end(), [&](const Config* config) { return rule.acts(*config); }))
-      continue;
+    std::vector<const Config*> arms;  // that do not heed it
+    std::set<std::string> names;
+    for (const sweep::Arm* arm : all)
+      if (!rule.acts(arm->config)) arms.push_back(&arm->config), names.insert(arm->name);
+    const bool some = arms.size() < all.size();
+    if (some && !rule.in_each_arm) continue;
     std::vector<std::string> keys;
     for (const ParameterInfo& parameter : Parameters())
       if (Begins(rule, parameter.key) && std::any_of(arms.begin(), arms.end(), [&](const Config* config) {
             return GetParameter(*config, parameter.key) != parameter.default_value;
           }))
         keys.push_back(parameter.key);
-    if (!keys.empty()) sentences.push_back(fmt::format("{}: {}", fmt::join(keys, ", "), rule.why));
+    if (!keys.empty())
+      sentences.push_back(fmt::format("{}{}: {}", fmt::join(keys, ", "),
+                                      some ? fmt::format(", in {}", fmt::join(names, ", ")) : "", rule.why));
   }
   return sentences;
 }

@@ -45,13 +45,25 @@ ResultReader::ResultReader(const std::string& dir) : dir_(dir), database_(OpenTo
     throw UserError(fmt::format("{}: no results in it yet ({} is empty)", dir, kResultsFile));
   format_ = static_cast<int>(database_.Int("PRAGMA user_version"));
   tables_.emplace(database_);
+  const Transaction moment(database_, Transaction::Kind::kRead);
   layout_ = ReadLayout(database_);
   recipe_ = ReadRecipe(database_);
 }
 
+void ResultReader::CheckPlan() {
+  Statement plan(database_, "SELECT value FROM recipe WHERE key = 'plan'");
+  if (!plan.Step() || plan.Text(0) != recipe_.plan_text)
+    throw UserError(fmt::format(
+        "{}: its plan has grown since it was opened; open it again (the same command does)", dir_));
+}
+
 std::vector<InputFile> ResultReader::Files() { return ReadFiles(database_); }
 
-FlownNetworks ResultReader::Networks() { return ReadNetworks(database_, layout_); }
+FlownNetworks ResultReader::Networks() {
+  const Transaction moment(database_, Transaction::Kind::kRead);
+  CheckPlan();
+  return ReadNetworks(database_, layout_);
+}
 
 int ResultReader::ArmNamed(int stage, const std::string& name) const {
   const RunLayout::Stage& there = layout_.stages.at(static_cast<std::size_t>(stage));
@@ -61,7 +73,11 @@ int ResultReader::ArmNamed(int stage, const std::string& name) const {
       fmt::format("{}: stage {} has no arm {} there; give a run of the same sweep", dir_, there.name, name));
 }
 
-std::vector<sweep::RunId> ResultReader::Stored() { return ReadStored(database_, layout_); }
+std::vector<sweep::RunId> ResultReader::Stored() {
+  const Transaction moment(database_, Transaction::Kind::kRead);
+  CheckPlan();
+  return ReadStored(database_, layout_);
+}
 
 std::int64_t ResultReader::CountMissions() {
   return database_.Int("SELECT count(*) FROM missions NOT INDEXED");
@@ -69,6 +85,7 @@ std::int64_t ResultReader::CountMissions() {
 
 std::vector<ArmStatus> ResultReader::Status() {
   const Transaction moment(database_, Transaction::Kind::kRead);
+  CheckPlan();
   std::vector<ArmStatus> status;
   for (const RunLayout::Stage& stage : layout_.stages)
     for (const RunLayout::Arm& arm : stage.arms)
@@ -88,7 +105,11 @@ std::vector<ArmStatus> ResultReader::Status() {
   return status;
 }
 
-std::vector<FailedMission> ResultReader::Failures() { return ReadFailures(database_, layout_); }
+std::vector<FailedMission> ResultReader::Failures() {
+  const Transaction moment(database_, Transaction::Kind::kRead);
+  CheckPlan();
+  return ReadFailures(database_, layout_);
+}
 
 std::vector<Session> ResultReader::Sessions() {
   const Transaction moment(database_, Transaction::Kind::kRead);
@@ -127,6 +148,7 @@ void ResultReader::ForEachMission(int stage, int arm, int first, int end, Steps 
 void ResultReader::Visit(const std::string& where, std::optional<std::int64_t> run, Steps steps,
                          const MissionVisitor& visit) {
   const Transaction moment(database_, Transaction::Kind::kRead);
+  CheckPlan();
   MissionCursor cursor(database_, layout_, where, steps);
   while (cursor.Next()) {
     if (run && cursor.run() != *run)
@@ -175,6 +197,7 @@ StoredMission ResultReader::LoadMission(const sweep::RunId& id) {
 
 std::string ResultReader::CheckWhole(const RecordVisitor& visit) {
   const Transaction moment(database_, Transaction::Kind::kRead);
+  CheckPlan();
   ResultDigest digest(*this);
   const std::vector<DamagedMission> damage =
       ed3r::store::FindDamage(database_, layout_, [&](const MissionCursor& mission) {
@@ -187,6 +210,7 @@ std::string ResultReader::CheckWhole(const RecordVisitor& visit) {
 
 std::vector<DamagedMission> ResultReader::FindDamage() {
   const Transaction moment(database_, Transaction::Kind::kRead);
+  CheckPlan();
   return ed3r::store::FindDamage(database_, layout_);
 }
 

@@ -60,6 +60,9 @@ class ResultReader {
   // Must not outlive the reader.
   [[nodiscard]] Transaction Moment() { return {database_, Transaction::Kind::kRead}; }
 
+  // UserError where the plan has grown since this reader was opened: arms may have other numbers now. Whatever reads missions asks it.
+  void CheckPlan();
+
   const RunLayout& Layout() const { return layout_; }
   const Recipe& StoredRecipe() const { return recipe_; }  // without notes and files: see Sessions()
   std::vector<InputFile> Files();

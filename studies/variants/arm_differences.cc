@@ -87,8 +87,8 @@ std::vector<ArmDifference> CompareArms(std::span<const metrics::ArmData> arms,
 }
 
 std::vector<std::string> ArmPairingNotes(std::span<const metrics::ArmData> arms) {
-  std::map<std::pair<std::string, std::string>, std::vector<std::string>> left_out,
-      other_worlds;  // by stage, reference
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> left_out, other_worlds,
+      few;  // by stage, reference
   for (const metrics::ArmData& arm : arms) {
     const metrics::ArmData* const reference = ReferenceOf(arms, arm.stage, {});
     if (reference == nullptr || &arm == reference) continue;
@@ -97,12 +97,20 @@ std::vector<std::string> ArmPairingNotes(std::span<const metrics::ArmData> arms)
       left_out[key].push_back(arm.name);
     else if (OtherWorlds(*reference, arm))
       other_worlds[key].push_back(arm.name);
+    if (FewInCommon(*reference, arm))
+      few[key].push_back(
+          fmt::format("{} ({} of {})", arm.name, ScenariosInCommon(*reference, arm), arm.missions.size()));
   }
   std::vector<std::string> notes;
   for (const auto& [key, names] : left_out)
     notes.push_back(
         fmt::format("{}: not compared with '{}' are {}, whose scenarios of one number begin elsewhere or "
                     "look for another fire.",
+                    key.first, key.second, fmt::join(names, ", ")));
+  for (const auto& [key, names] : few)
+    notes.push_back(
+        fmt::format("{}: not all scenario numbers are those of '{}' (mission.first_scenario), compared are "
+                    "those in common: {}.",
                     key.first, key.second, fmt::join(names, ", ")));
   for (const auto& [key, names] : other_worlds)
     for (std::string& note : PlaceNotes({}, names, key.second)) notes.push_back(std::move(note));

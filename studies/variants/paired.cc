@@ -149,6 +149,18 @@ bool SameScenarios(const metrics::ArmData& a, const metrics::ArmData& b) {
   });
 }
 
+std::size_t ScenariosInCommon(const metrics::ArmData& a, const metrics::ArmData& b) {
+  std::set<std::int64_t> scenarios;
+  for (const mission::MissionRecord& mission : a.missions) scenarios.insert(mission.scenario);
+  return static_cast<std::size_t>(std::count_if(
+      b.missions.begin(), b.missions.end(),
+      [&](const mission::MissionRecord& mission) { return scenarios.contains(mission.scenario); }));
+}
+
+bool FewInCommon(const metrics::ArmData& a, const metrics::ArmData& b) {
+  return ScenariosInCommon(a, b) < std::min(a.missions.size(), b.missions.size());
+}
+
 bool OtherWorlds(const metrics::ArmData& a, const metrics::ArmData& b) {
   return !a.world.empty() && !b.world.empty() && a.world != b.world;
 }

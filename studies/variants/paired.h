@@ -36,6 +36,12 @@ PairedDifference DifferenceOf(const metrics::ArmData& base, const metrics::ArmDa
 // do not. True where the arms share no scenario.
 bool SameScenarios(const metrics::ArmData& a, const metrics::ArmData& b);
 
+// Scenario numbers that both flew.
+std::size_t ScenariosInCommon(const metrics::ArmData& a, const metrics::ArmData& b);
+
+// Whether not even the shorter one's are all in common: one may have flown on, as a precision asks.
+bool FewInCommon(const metrics::ArmData& a, const metrics::ArmData& b);
+
 // Whether they were flown in worlds of other content: a place of one number may then lie elsewhere.
 bool OtherWorlds(const metrics::ArmData& a, const metrics::ArmData& b);
 

@@ -29,14 +29,6 @@ std::vector<std::string> OnlyIn(std::span<const metrics::ArmData> arms,
   return names;
 }
 
-std::size_t InCommon(const metrics::ArmData& a, const metrics::ArmData& b) {
-  std::set<std::int64_t> scenarios;
-  for (const mission::MissionRecord& mission : a.missions) scenarios.insert(mission.scenario);
-  return static_cast<std::size_t>(std::count_if(
-      b.missions.begin(), b.missions.end(),
-      [&](const mission::MissionRecord& mission) { return scenarios.contains(mission.scenario); }));
-}
-
 // With other seeds nothing but the numbers is.
 std::string CommonText(std::size_t common, std::size_t here, std::size_t there, bool same_draws) {
   const std::string what = same_draws ? "scenario" : "scenario number";
@@ -57,7 +49,7 @@ std::vector<std::string> PairingNotes(const LabelledRun& first, const LabelledRu
   for (const metrics::ArmData& arm : first.arms) {
     const metrics::ArmData* const beside = Find(other.arms, arm);
     if (beside == nullptr || arm.missions.empty() || beside->missions.empty()) continue;
-    const std::size_t common = InCommon(arm, *beside);
+    const std::size_t common = ScenariosInCommon(arm, *beside);
     if (common < std::max(arm.missions.size(), beside->missions.size()))
       partly[CommonText(common, arm.missions.size(), beside->missions.size(), same_draws)].push_back(
           arm.name);
@@ -78,7 +70,7 @@ std::vector<std::string> VariantPairingNotes(std::span<const metrics::ArmData> a
   const std::vector<std::string> variants = VariantsOf(arms);
   if (variants.empty()) return {};
   const std::vector<metrics::ArmData> first = ArmsOfVariant(arms, variants.front());
-  std::vector<std::string> elsewhere, other_worlds;
+  std::vector<std::string> elsewhere, other_worlds, few;
   for (const std::string& variant : variants) {
     const std::vector<metrics::ArmData> own = ArmsOfVariant(arms, variant);
     const auto any = [&](auto differ) {
@@ -91,8 +83,15 @@ std::vector<std::string> VariantPairingNotes(std::span<const metrics::ArmData> a
       elsewhere.push_back(variant);
     else if (any(OtherWorlds))
       other_worlds.push_back(variant);
+    if (any(FewInCommon)) few.push_back(variant);
   }
-  return PlaceNotes(elsewhere, other_worlds, variants.front());
+  std::vector<std::string> notes = PlaceNotes(elsewhere, other_worlds, variants.front());
+  if (!few.empty())
+    notes.push_back(
+        fmt::format("{}: not all scenario numbers are those of '{}' (mission.first_scenario): compared are "
+                    "those in common.",
+                    fmt::join(few, ", "), variants.front()));
+  return notes;
 }
 
 std::vector<std::string> PlaceNotes(const std::vector<std::string>& elsewhere,

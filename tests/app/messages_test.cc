@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "tests/app/command.h"
 
 namespace ed3r::app {
@@ -85,6 +87,13 @@ TEST(MessagesTest, SettingsThatNobodyHeedsAreSaid) {
   EXPECT_EQ(notes(wind).find("note: environment.wind_x_mps: wind is flown in and not billed"), 0u)
       << notes(wind);
   EXPECT_EQ(notes(wind + " --set energy.model=momentum"), "");
+  const ScratchFolder scratch;
+  std::ofstream(scratch / "both.yaml")
+      << "name: both\nmissions: 2\nseed: 1\nset: {strategy: rbs, environment.wind_x_mps: 4, "
+      << "mission.world: " << ED3R_SOURCE_DIR << "/sweeps/worlds/paper.yaml}\n"
+      << "sweep: {list: [{name: still, energy.model: paper}, {name: air, energy.model: momentum}]}\n";
+  const std::string both = Ed3r("plan " + (scratch / "both.yaml").string()).out;
+  EXPECT_NE(both.find("note: environment.wind_x_mps, in still: wind is flown in"), std::string::npos) << both;
   EXPECT_EQ(notes(" --set energy.interference=0.4"),
             "note: energy.interference: only energy.model momentum heeds this\n");
   EXPECT_EQ(notes(" --set mission.start_yaw_deg=90"),

@@ -249,6 +249,22 @@ TEST_F(GrowthTest, AValueMoreOnAnAxisMovesTheArmsBehindIt) {
   EXPECT_EQ(DigestOfDir(Dir()), Fresh(more));
 }
 
+// Arms have other numbers then: what an open reader has read of the plan is no longer true.
+TEST_F(GrowthTest, AnOpenReaderIsToldThatThePlanHasGrown) {
+  Fly(Dir(), Masses({1.8, 2.4}, 4));
+  ResultReader reader(Dir());
+  EXPECT_EQ(reader.Status().size(), 2u);
+  Fly(Dir(), Masses({1.8, 2.1, 2.4}, 4));
+  const std::string grown =
+      Dir() + ": its plan has grown since it was opened; open it again (the same command does)";
+  EXPECT_EQ(UserErrorOf([&] { reader.Status(); }), grown);
+  EXPECT_EQ(UserErrorOf([&] { reader.Stored(); }), grown);
+  EXPECT_EQ(UserErrorOf([&] { reader.CheckWhole(); }), grown);
+  EXPECT_EQ(UserErrorOf([&] { reader.FindDamage(); }), grown);
+  EXPECT_EQ(UserErrorOf([&] { reader.LoadMission({0, 1, 0}); }), grown);
+  EXPECT_EQ(ResultReader(Dir()).Status().size(), 3u);
+}
+
 TEST_F(GrowthTest, WhatHasFailedIsStillTheSameMissions) {
   const sweep::SweepPlan plan = Masses({1, 3}, 10);
   {

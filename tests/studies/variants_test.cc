@@ -60,6 +60,16 @@ TEST(VariantsTest, OtherPlacesAreSaid) {
   EXPECT_EQ(notes[0].find("heavy: scenarios of one number begin elsewhere"), 0u) << notes[0];
 }
 
+TEST(VariantsTest, FewScenariosInCommonAreSaid) {
+  std::vector<metrics::ArmData> arms = Study();
+  arms[1].missions.pop_back();
+  EXPECT_TRUE(variants::VariantPairingNotes(arms).empty()) << "one flew on";
+  for (mission::MissionRecord& mission : arms[1].missions) mission.scenario += 5;
+  const std::vector<std::string> notes = variants::VariantPairingNotes(arms);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0].find("heavy: not all scenario numbers are those of 'base'"), 0u) << notes[0];
+}
+
 TEST(VariantsTest, DifferencesArePairedByScenario) {
   const variants::VariantStudy study = variants::CompareVariants(Study(), variants::Verdicts::kJudged);
   ASSERT_EQ(study.differences.size(), 3u);
