@@ -30,6 +30,10 @@ class Mode(enum.IntEnum):
     QUANTIZED = 2
 
 
+class Fruit(enum.Enum):
+    APPLE, PEAR, PLUM, FIG = range(4)
+
+
 GAIN, GENERATOR = 1, np.random.default_rng(1)
 WEIGHTS = np.zeros(3)
 
@@ -123,6 +127,117 @@ class Remembering(list):
         return stay(obs, info)
 
 
+class Constant:
+    def __init__(self, value):
+        self.value = value
+
+    def __get__(self, instance, owner):
+        return self.value
+
+
+class Described(Base):
+    mode = Constant(1)
+
+
+class Meta(type):
+    @property
+    def mode(cls):
+        return GAIN
+
+
+class OfMeta(Base, metaclass=Meta):
+    pass
+
+
+def by_globals(obs, info):
+    return stay(obs, info, globals()["GAIN"])
+
+
+def by_vars(obs, info):
+    return stay(obs, info, vars(Base)["speed"])
+
+
+def by_locals(obs, info):
+    return stay(obs, info, len(locals()))
+
+
+def by_eval(obs, info):
+    return [eval("GAIN") for _ in obs]
+
+
+def by_exec(obs, info):
+    exec("obs *= GAIN")
+    return stay(obs, info)
+
+
+def by_import(obs, info):
+    return stay(obs, info, __import__("settings").mode)
+
+
+def wrapped_members():
+    """By how they are wrapped, objects with a member in which alone GAIN is read."""
+
+    class Cached(Base):
+        @functools.cached_property
+        def mode(self):
+            return GAIN
+
+    class Remembered:
+        @functools.lru_cache
+        def __call__(self, obs, info):
+            return stay(obs, info, GAIN)
+
+    class Dispatched:
+        @functools.singledispatchmethod
+        def mode(self, kind):
+            return 0
+
+        mode.register(int, lambda self, kind: GAIN)
+
+    class Bound:
+        def decide(self, mode, obs, info):
+            return stay(obs, info, mode)
+
+        __call__ = functools.partialmethod(decide, GAIN)
+
+    class Within:
+        __call__ = functools.partialmethod(lambda self, mode, obs, info: stay(obs, info, GAIN), 1)
+
+    class Called:
+        __call__ = functools.partial(stay, mode=GAIN)
+
+    class Set(Base):
+        mode = property(None, lambda self, mode: setattr(self, "speed", GAIN))
+
+    class Static(Base):
+        @staticmethod
+        @functools.lru_cache
+        def mode():
+            return GAIN
+
+    class Speed(enum.Enum):
+        SLOW = GAIN
+
+    class Slow(enum.Enum):
+        SLOW = 1
+
+        def __call__(self, obs, info):
+            return stay(obs, info, GAIN)
+
+    return {"cached_property": Cached(), "lru_cache": Remembered(), "singledispatchmethod": Dispatched(),
+            "partialmethod": Bound(), "partialmethod of a lambda": Within(), "partial": Called(), "setter": Set(),
+            "staticmethod": Static(), "value of an enum": Policy(Speed.SLOW), "method of an enum": Slow.SLOW}
+
+
+def holding_sets():
+    """Policies that hold sets whose order is by address or by the hash of texts, and what those refer to."""
+    shared = [Policy(mode) for mode in range(4)]
+    circle = Policy(1)
+    circle.all = {circle, *shared}
+    return [closing_over(set(Fruit)), closing_over(frozenset(shared)), closing_over({stay, walk, Base, Plan}), circle,
+            closing_over((set(shared), shared)), closing_over({fruit: 1 for fruit in set(Fruit)})]
+
+
 # Every one is another policy than all the others of its line.
 DIFFERENT = {
     "partial": lambda: [stay, walk, functools.partial(stay), functools.partial(walk), functools.partial(stay, mode=2),
@@ -142,6 +257,7 @@ DIFFERENT = {
         stay(obs, info, 1), lambda obs, info: stay(obs, info, 1)],
     "object": lambda: [Policy(1), Policy(2), Base(), Policy(Policy(1)), Policy(Plan(1)), Plan(1), Plan(2), Policy, Plan,
                        Policy(1).decide, Policy(2).decide, Policy(1).__call__, Policy(1).me(), Policy(WEIGHTS)],
+    "set": holding_sets,
 }
 
 
@@ -180,6 +296,24 @@ class PoliciesTest(unittest.TestCase):
         before = identity_of(Policy(1), None)
         with unittest.mock.patch.object(Base, "speed", 2):
             self.assertNotEqual(identity_of(Policy(1), None), before)
+
+    def test_globals_that_a_wrapped_member_reads_belong_to_its_policy(self):
+        before = {kind: identity_of(policy, None) for kind, policy in wrapped_members().items()}
+        self.assertEqual({kind: identity_of(policy, None) for kind, policy in wrapped_members().items()}, before)
+        with unittest.mock.patch.dict(globals(), {"GAIN": 2}):
+            for kind, policy in wrapped_members().items():
+                with self.subTest(kind):
+                    self.assertNotEqual(identity_of(policy, None), before[kind])
+
+    def test_values_that_no_source_names_need_a_version(self):
+        self.refused("policy.mode is a descriptor, .*Constant, by which one policy is not told", Described())
+        self.refused("policy is of the metaclass .*Meta, by which one policy is not told", OfMeta())
+        for name, policy in (("globals", by_globals), ("vars", by_vars), ("locals", by_locals), ("eval", by_eval),
+                             ("exec", by_exec), ("__import__", by_import)):
+            self.refused(f"policy.{name} reaches values that the source does not name", policy)
+        self.refused(r"policy.held\[0\] reaches values", closing_over(eval))
+        with unittest.mock.patch.dict(globals(), {"vars": stay}):
+            identity_of(by_vars, None)
 
     def test_what_tells_nothing_needs_a_version(self):
         other = r", by which one policy is not told from another; allowed: any text"
