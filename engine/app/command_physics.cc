@@ -35,7 +35,9 @@ std::vector<Row> ClosedForms(const Config& c) {
       robot::Computation(c.cpu, c.sensing, c.cpu.quantized_gflop, c.point.cpu_frequency_hz);
   return {
       {"hover_power_w", power.hover_w, "W", "P_hov (R1)"},
-      {"horizontal_power_w", power.horizontal_w, "W", "P_hor (R2)"},
+      {"horizontal_power_w", power.horizontal_w, "W",
+       robot::BillsWind(c.environment, c.energy) ? "P_hor across the wind; other courses draw otherwise"
+                                                 : "P_hor (R2)"},
       {"ascent_power_w", power.ascent_w, "W", "P_ver upwards (R3)"},
       {"descent_power_w", power.descent_w, "W", "P_ver downwards (R3)"},
       {"sensing_energy_j", robot::SensingEnergyJ(c.sensing), "J",

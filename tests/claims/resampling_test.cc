@@ -114,6 +114,10 @@ TEST(UncertaintyTest, OneMissionTellsNothing) {
   EXPECT_TRUE(std::isnan(u.lo) && std::isnan(u.hi) && std::isnan(u.sd_missions));
   EXPECT_EQ(statistics::TestAgainst(one, u, 0).below, 1);
   EXPECT_EQ(statistics::TestAgainst(one, u, 0).above, 1);
+  // Two tell, by one degree of freedom.
+  statistics::Resampled two{10, Ramp(4), {}, 1};
+  two.units = 2;
+  EXPECT_NEAR(statistics::UncertaintyOf(two).hi - 10, 1.9 * std::sqrt(2.0) * 12.7062047 / 1.959964, 1e-4);
 }
 
 TEST(UncertaintyTest, HalfOfTheResamplesAreEnoughAndOneIsNot) {
