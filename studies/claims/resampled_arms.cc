@@ -103,7 +103,7 @@ struct ResampledArms::View {
       const std::int64_t times = std::min<std::int64_t>(left, count(i));
       if (times == 0) continue;
       left -= times;
-      const double* row = &columns[i * columns_per_mission];
+      const double* row = columns.data() + i * columns_per_mission;  // of no column nothing is read
       for (std::size_t c = 0; c < columns_per_mission; ++c) totals[c] += static_cast<double>(times) * row[c];
     }
   }
