@@ -427,12 +427,10 @@ TEST(VerdictsTest, ArmsOfOtherRotationsArePairedAndNamed) {
 
 // As the paper's tables do.
 TEST(VerdictsTest, OfArmsOfOneNameTheLastStagesCounts) {
-  std::vector<metrics::ArmData> arms = {MakeArm({"ed3r-75", 40}), MakeArm({"ecd2r", 25}),
-                                        MakeArm({"ed3r-75", 20})};
+  std::vector arms = {MakeArm({"ed3r-75", 40}), MakeArm({"ecd2r", 25}), MakeArm({"ed3r-75", 20})};
   arms[0].stage = "first";
-  const ClaimStudy study = JudgeClaims({Order("ed3r-75 < ecd2r"), Energy("ed3r-75", "20")}, arms);
-  EXPECT_EQ(study.claims[0].all.verdict, Verdict::kDirectionHolds);
-  EXPECT_NEAR(study.claims[1].all.ours, 20, 2);
+  EXPECT_EQ(VerdictOf(Order("ed3r-75 < ecd2r"), arms), Verdict::kDirectionHolds);
+  EXPECT_NEAR(JudgeOne(Energy("ed3r-75", "20"), arms).all.ours, 20, 2);
   arms[2].missions.clear();  // planned, not flown yet
   EXPECT_NEAR(JudgeOne(Energy("ed3r-75", "20"), arms).all.ours, 40, 4);
 }
