@@ -254,14 +254,19 @@ Command AddMerge(Program& program) {
   struct Options {
     std::string out;
     std::vector<std::string> dirs;
+    bool accept_mixed = false;
   };
   auto options = std::make_shared<Options>();
   CommandLine parser =
       program.AddCommand("merge", "Joins shards into one run directory; refuses conflicting records");
   parser.Option("OUT", options->out, "Run directory to make or to add to").Required();
   parser.Option("DIR", options->dirs, "Run directories to join").Required();
+  parser.Flag("--accept-mixed", options->accept_mixed,
+              "Join what different code has flown; the report of the run says so");
   return {parser, [options] {
-            const store::MergeSummary summary = store::MergeStores(options->out, options->dirs);
+            const store::MergeSummary summary = store::MergeStores(
+                options->out, options->dirs,
+                options->accept_mixed ? store::OtherCode::kAccept : store::OtherCode::kRefuse);
             fmt::print("{}: {} missions added, {} were there already, {} failed\n", options->out,
                        summary.added, summary.present, summary.failed);
             return kDone;

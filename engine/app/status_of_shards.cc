@@ -48,16 +48,9 @@ struct Found {
   }
 };
 
-bool HoldsResults(const std::string& dir) {
-  std::error_code error;
-  const std::uintmax_t bytes =
-      std::filesystem::file_size(std::filesystem::path(dir) / store::kResultsFile, error);
-  return !error && bytes > 0;
-}
-
 Found Look(const std::string& dir) {
   std::vector<std::string> stores = store::ShardDirs(dir);
-  if (HoldsResults(dir)) stores.insert(stores.begin(), dir);
+  if (store::HoldsResults(dir)) stores.insert(stores.begin(), dir);
   Found found;
   found.stores = stores.size();
   std::optional<store::Tally> tally;
@@ -123,7 +116,7 @@ nlohmann::ordered_json ArmsJson(const std::vector<store::ArmStatus>& arms) {
 
 bool IsTallied(const std::string& dir) {
   if (!store::ShardDirs(dir).empty()) return true;
-  if (!HoldsResults(dir)) return false;
+  if (!store::HoldsResults(dir)) return false;
   store::Connection database((std::filesystem::path(dir) / store::kResultsFile).string(),
                              store::Connection::Access::kReadOnly);
   return database.Int("SELECT count(*) FROM sqlite_schema WHERE name = 'timings'") > 0 &&

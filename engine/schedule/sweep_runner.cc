@@ -112,22 +112,16 @@ namespace {
 class SweepRun {
  public:
   SweepRun(const sweep::SweepPlan& plan, const Inputs& inputs, const SweepOptions& options)
-      : plan_(plan),
-        inputs_(inputs),
-        options_(options),
-        layout_(store::LayoutOf(plan)),
-        store_(store::ResultStore::Open(
-            options.dir, RecipeOf(plan, inputs, options), layout_,
-            options.accept_mixed ? store::OtherCode::kAccept : store::OtherCode::kRefuse,
-            options.repair ? store::Repair::kYes : store::Repair::kNo)) {
+      : plan_(plan), inputs_(inputs), options_(options), layout_(store::LayoutOf(plan)) {
+    CheckFoundation();  // what is refused has repaired nothing
+    store_ = store::ResultStore::Open(
+        options.dir, RecipeOf(plan, inputs, options), layout_,
+        {.other_code = options.accept_mixed ? store::OtherCode::kAccept : store::OtherCode::kRefuse,
+         .repair = options.repair ? store::Repair::kYes : store::Repair::kNo,
+         .may_grow = !options.only_failed});
     RemoveLeftovers(options.dir);
     RemoveLeftovers(options.cache_dir);
     LookForDamage();
-    if (options.only_failed && !store_->Grown().empty())
-      throw UserError(fmt::format(
-          "{}: --only-failed flies nothing that is missing, and the plan asks for more than is there ({}); "
-          "leave --only-failed out, or give the plan that is there",
-          options.dir, store_->Grown()));
     summary_.stored_before = static_cast<std::int64_t>(store_->Stored().size());
   }
 
@@ -154,7 +148,6 @@ class SweepRun {
 
  private:
   void RunStages() {
-    CheckFoundation();
     if (options_.only_failed) again_ = store_->Failed();
     for (std::size_t i = 0; i < plan_.stages.size() && !summary_.flown.interrupted; ++i) {
       if (!options_.stage.empty() && plan_.stages[i].name != options_.stage) continue;
@@ -376,7 +369,7 @@ class SweepRun {
   const Inputs& inputs_;
   const SweepOptions& options_;
   const store::RunLayout layout_;
-  const std::unique_ptr<store::ResultStore> store_;
+  std::unique_ptr<store::ResultStore> store_;
   std::unique_ptr<NetworkShelf> networks_;
   std::vector<sweep::RunId> again_;  // missions that have failed, where only those are asked for
   std::set<std::string>

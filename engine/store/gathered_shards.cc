@@ -28,17 +28,11 @@ std::string NewTemporaryFolder() {
   return name;
 }
 
-bool HoldsResults(const std::string& dir) {
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(fs::path(dir) / kResultsFile, error);
-  return !error && bytes > 0;
-}
-
 std::string Shards(std::int64_t count) { return fmt::format("{} shard{}", count, count == 1 ? "" : "s"); }
 
-// The command that takes in a shard and those beside it.
+// The command that takes in a shard and those beside it, in a quote that is left open.
 std::string MergeOf(const std::string& run_dir, const std::string& shard) {
-  return fmt::format("'ed3r merge {} {}/*/'", run_dir, fs::path(shard).parent_path().string());
+  return fmt::format("'ed3r merge {} {}/*/", run_dir, fs::path(shard).parent_path().string());
 }
 
 std::vector<sweep::RunId> Failed(ResultReader& reader) {
@@ -90,16 +84,21 @@ class LeftOut {
   explicit LeftOut(std::string run_dir) : run_dir_(std::move(run_dir)) {}
 
   void Add(const std::string& shard, const PartOfRun& part) {
-    (part.plan == PartPlan::kGrown ? grown_ : other_).Add(shard, part.what);
+    Some& some = part.plan == PartPlan::kGrown ? grown_ : part.plan == PartPlan::kMixed ? mixed_ : other_;
+    some.Add(shard, part.what);
   }
   void AddUnreadable(const std::string& shard, const std::string& why) { unreadable_.Add(shard, why); }
 
   std::vector<std::string> Notes() const {
     std::vector<std::string> notes;
     if (grown_.count > 0)
-      notes.push_back(fmt::format("{}: {} of a plan that has grown not counted ({}); {} takes them in",
+      notes.push_back(fmt::format("{}: {} of a plan that has grown not counted ({}); {}' takes them in",
                                   run_dir_, Shards(grown_.count), grown_.what,
                                   MergeOf(run_dir_, grown_.first)));
+    if (mixed_.count > 0)
+      notes.push_back(fmt::format("{}: {} of other code not counted ({}); {} --accept-mixed' takes them in",
+                                  run_dir_, Shards(mixed_.count), mixed_.what,
+                                  MergeOf(run_dir_, mixed_.first)));
     if (other_.count > 0)
       notes.push_back(fmt::format(
           "{}: {} of another plan not counted ({}: {}); take what is of another run out of {}", run_dir_,
@@ -120,13 +119,16 @@ class LeftOut {
   };
 
   std::string run_dir_;
-  Some grown_, other_, unreadable_;
+  Some grown_, mixed_, other_, unreadable_;
 };
 
 [[noreturn]] void Refuse(const std::string& run_dir, const std::string& shard, const PartOfRun& part) {
   if (part.plan == PartPlan::kGrown)
-    throw UserError(fmt::format("{}: its plan has grown beyond that of {} ({}); {} takes it in", shard,
+    throw UserError(fmt::format("{}: its plan has grown beyond that of {} ({}); {}' takes it in", shard,
                                 run_dir, part.what, MergeOf(run_dir, shard)));
+  if (part.plan == PartPlan::kMixed)
+    throw UserError(fmt::format("{}: flown by other code than {} (there): {}; {} --accept-mixed' takes it in",
+                                shard, run_dir, part.what, MergeOf(run_dir, shard)));
   throw UserError(fmt::format("{}: of another plan than {} (there): {}; take it out of that folder", shard,
                               run_dir, part.what));
 }

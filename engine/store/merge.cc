@@ -10,12 +10,15 @@
 #include <utility>
 
 #include "engine/core/check.h"
+#include "engine/store/common_run.h"
 #include "engine/store/damage.h"
 #include "engine/store/digest.h"
+#include "engine/store/growth.h"
 #include "engine/store/joined_missions.h"
 #include "engine/store/reader.h"
 #include "engine/store/records.h"
 #include "engine/store/schema.h"
+#include "engine/store/shards.h"
 #include "engine/store/store_file.h"
 
 namespace ed3r::store {
@@ -49,11 +52,15 @@ class Target {
         has_mission_(database, "SELECT 1 FROM missions WHERE run = ? AND mission = ?"),
         holds_missions_(database.Int("SELECT count(*) FROM (SELECT 1 FROM missions LIMIT 1)") > 0) {}
 
+  // Stores of one plan, which is the target's or has grown into it.
   void Add(const std::vector<std::unique_ptr<ResultReader>>& sources) {
+    if (sources.empty()) return;
+    arms_here_ = ArmsAfterGrowth(sources.front()->Layout(), layout_);
+    last_ = {-1, -1, -1};
     std::vector<bool> same_columns;
     for (const auto& source : sources) {
       AddSessions(*source);
-      PutNetworks(database_, layout_, source->Networks());
+      AddNetworks(source->Networks());
       same_columns.push_back(HasColumnsOf(source->Tables()));
     }
     JoinedMissions missions(sources, ReadingThreads());
@@ -79,25 +86,39 @@ class Target {
     }
   }
 
+  void AddNetworks(FlownNetworks networks) {
+    for (NetworkUse& use : networks.uses) use.arm = ArmHere(use.stage, use.arm);
+    PutNetworks(database_, layout_, networks);
+  }
+
+  int ArmHere(int stage, int arm) const {
+    return arms_here_.at(static_cast<std::size_t>(stage)).at(static_cast<std::size_t>(arm));
+  }
+
+  sweep::RunId Here(sweep::RunId id) const {
+    id.arm = ArmHere(id.stage, id.arm);
+    return id;
+  }
+
   void AddMission(const std::string& from, bool same_columns, const ComparedMission& mission) {
-    const std::pair key{mission.run, mission.mission};
+    const sweep::RunId id = Here(mission.id);
     // In plan order, what an empty file holds of a mission is what was put just now.
-    const bool may_be_there = holds_missions_ || key == last_;
-    last_ = key;
-    if (may_be_there && cursor_.Seek(mission.run, mission.mission)) {
+    const bool may_be_there = holds_missions_ || id == last_;
+    last_ = id;
+    if (may_be_there && cursor_.Seek(layout_.RunIndex(id), id.mission)) {
       if (!IsSame(same_columns, mission))
         throw UserError(fmt::format("{}: {} differs from the record of another store that is merged into {}",
-                                    from, layout_.Describe(mission.id), dir_));
+                                    from, layout_.Describe(id), dir_));
       ++summary_.present;
       return;
     }
     if (same_columns)
-      writer_.InsertMission(mission.id, mission.record, mission.checksums);
+      writer_.InsertMission(id, mission.record, mission.checksums);
     else if (mission.keeps_timesteps)
-      writer_.InsertMission(mission.id, mission.record);
+      writer_.InsertMission(id, mission.record);
     else
-      writer_.InsertWithoutTimesteps(mission.id, mission.record, mission.checksums.steps);
-    if (!std::isnan(mission.wall_s)) writer_.InsertTiming(mission.id, mission.session, mission.wall_s);
+      writer_.InsertWithoutTimesteps(id, mission.record, mission.checksums.steps);
+    if (!std::isnan(mission.wall_s)) writer_.InsertTiming(id, mission.session, mission.wall_s);
     ++summary_.added;
   }
 
@@ -111,13 +132,12 @@ class Target {
 
   void AddFailures(ResultReader& source) {
     for (const FailedMission& failure : source.Failures()) {
-      const std::int64_t run = source.Layout().RunIndex(failure.id);
-      has_mission_.Bind(0, run);
-      has_mission_.Bind(1, std::int64_t{failure.id.mission});
+      const sweep::RunId id = Here(failure.id);
+      has_mission_.Bind(0, layout_.RunIndex(id));
+      has_mission_.Bind(1, std::int64_t{id.mission});
       const bool flown = has_mission_.Step();
       has_mission_.Reset();
-      if (!flown)
-        writer_.InsertFailure(failure.id, failure.scenario, failure.seed, {failure.kind, failure.message});
+      if (!flown) writer_.InsertFailure(id, failure.scenario, failure.seed, {failure.kind, failure.message});
     }
   }
 
@@ -127,44 +147,11 @@ class Target {
   RecordWriter writer_;
   MissionCursor cursor_;
   Statement put_session_, put_note_, has_mission_;
-  bool holds_missions_;  // from before, or from other stores than those that are read now
-  std::pair<std::int64_t, std::int64_t> last_{-1, -1};  // the mission that was added last
+  bool holds_missions_;                      // from before, or from other stores than those that are read now
+  std::vector<std::vector<int>> arms_here_;  // of the stores that are read now, by stage
+  sweep::RunId last_{-1, -1, -1};            // the mission that was added last
   MergeSummary summary_;
 };
-
-void CheckSameRecipe(const ResultReader& first, const ResultReader& other) {
-  // What is merged is given checksums, as if it had been compared with some.
-  if (!other.Tables().checked())
-    throw UserError(fmt::format("{}: {}: it can be read, but not merged; fly it again into another --out",
-                                other.dir(), kNothingToCompare));
-  const std::vector<RunLayout::Stage>& stages = other.Layout().stages;
-  for (std::size_t s = 0; s < stages.size(); ++s)
-    if (!other.Tables().complete() &&
-        other.Tables().KeptOf(static_cast<int>(s)) != sweep::KeptTimesteps::kAll)
-      throw UserError(
-          fmt::format("{}: written by an older ed3r without the timesteps of stage {}, of which their new "
-                      "checksums would be made: it can be read, but not merged",
-                      other.dir(), stages[s].name));
-  if (const auto difference = Difference(first.StoredRecipe(), other.StoredRecipe()))
-    throw UserError(
-        fmt::format("{} (there) and {} (here) cannot be merged: {}", first.dir(), other.dir(), *difference));
-  for (const auto& [there, here] : {std::pair(&first, &other), std::pair(&other, &first)})
-    if (const auto code = CodeDifference(there->StoredRecipe().code, here->StoredRecipe().code))
-      throw UserError(
-          fmt::format("{} (there) and {} (here) cannot be merged: {}", there->dir(), here->dir(), *code));
-  if (!first.Layout().SameMissions(other.Layout()))
-    throw UserError(fmt::format("{} and {} cannot be merged: their stages, arms or seeds differ", first.dir(),
-                                other.dir()));
-}
-
-// Of the first, when those of all others are equal.
-std::pair<Recipe, RunLayout> CommonRecipe(const std::vector<std::string>& dirs) {
-  ResultReader first(dirs.front());
-  for (const std::string& dir : dirs) CheckSameRecipe(first, ResultReader(dir));
-  Recipe recipe = first.StoredRecipe();
-  recipe.files = first.Files();
-  return {std::move(recipe), first.Layout()};
-}
 
 // What is in `out` already and in no source would come through unseen.
 void CheckWhole(Connection& database, const RunLayout& layout) {
@@ -180,26 +167,55 @@ bool SameStore(const std::string& a, const std::string& b) {
          std::filesystem::equivalent(one, other);
 }
 
+void AddAll(Target& target, const std::vector<std::string>& dirs) {
+  for (std::size_t begin = 0; begin < dirs.size(); begin += kReadAtOnce) {
+    std::vector<std::unique_ptr<ResultReader>> sources;
+    for (std::size_t i = begin; i < std::min(begin + kReadAtOnce, dirs.size()); ++i)
+      sources.push_back(std::make_unique<ResultReader>(dirs[i]));
+    target.Add(sources);
+  }
+}
+
+struct ToMerge {
+  Recipe recipe;
+  RunLayout layout;
+  std::vector<std::vector<std::string>> by_plan;
+};
+
+// With tables: a killed merge leaves a file without.
+bool IsStore(const std::string& dir) {
+  if (!HoldsResults(dir)) return false;
+  try {
+    const ResultReader reader(dir);
+    return true;
+  } catch (const NoResultsYet&) {
+    return false;
+  }
+}
+
+// A reader on `out` must be gone before it is written: it would keep the file in WAL mode.
+ToMerge LookAt(const std::string& out, std::vector<std::string> dirs, OtherCode other_code) {
+  if (IsStore(out)) dirs.push_back(out);
+  const CommonRun run(dirs, other_code);
+  ToMerge all{run.TheRecipe(), run.Layout(), run.ByPlan()};
+  // What is in `out` need not be copied.
+  for (std::vector<std::string>& of_plan : all.by_plan)
+    std::erase_if(of_plan, [&](const std::string& dir) { return SameStore(dir, out); });
+  return all;
+}
+
 }  // namespace
 
-MergeSummary MergeStores(const std::string& out, const std::vector<std::string>& dirs) {
+MergeSummary MergeStores(const std::string& out, const std::vector<std::string>& dirs, OtherCode other_code) {
   if (dirs.empty()) throw UserError(fmt::format("{}: nothing to merge into it", out));
-  const auto [recipe, layout] = CommonRecipe(dirs);
-  // What is in `out` need not be copied; and a reader on it would keep its file in WAL mode.
-  std::vector<std::string> others = dirs;
-  std::erase_if(others, [&](const std::string& dir) { return SameStore(dir, out); });
-  StoreFile file(out, recipe, layout);
+  const ToMerge all = LookAt(out, dirs, other_code);
+  StoreFile file(out, all.recipe, all.layout, {.other_code = OtherCode::kAccept});  // looked at already
   try {
     Transaction transaction(file.database(), Transaction::Kind::kWrite);
-    file.TakeUp(recipe, layout);
-    if (file.grown().empty()) CheckWhole(file.database(), layout);  // else looked through before it grows
-    Target target(file.database(), layout, out);
-    for (std::size_t begin = 0; begin < others.size(); begin += kReadAtOnce) {
-      std::vector<std::unique_ptr<ResultReader>> sources;
-      for (std::size_t i = begin; i < std::min(begin + kReadAtOnce, others.size()); ++i)
-        sources.push_back(std::make_unique<ResultReader>(others[i]));
-      target.Add(sources);
-    }
+    file.TakeUp(all.recipe, all.layout);
+    if (file.grown().empty()) CheckWhole(file.database(), all.layout);  // else looked through before it grows
+    Target target(file.database(), all.layout, out);
+    for (const std::vector<std::string>& of_plan : all.by_plan) AddAll(target, of_plan);
     MergeSummary summary = target.summary();
     summary.failed = file.database().Int("SELECT count(*) FROM failures");
     transaction.Commit();

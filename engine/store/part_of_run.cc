@@ -7,15 +7,6 @@
 #include "engine/store/reader.h"
 
 namespace ed3r::store {
-namespace {
-
-PartOfRun OfCode(PartPlan plan, const Recipe& run, const Recipe& part) {
-  if (auto difference = CodeDifference(run.code, part.code)) return {PartPlan::kOther, *difference};
-  return {plan, ""};
-}
-
-}  // namespace
-
 std::set<std::string> StagesWithNetworks(ResultReader& reader) {
   std::set<std::string> stages;
   for (const NetworkUse& use : reader.Networks().uses)
@@ -23,18 +14,26 @@ std::set<std::string> StagesWithNetworks(ResultReader& reader) {
   return stages;
 }
 
-PartOfRun FindPlan(const Recipe& run, const RunLayout& layout, ResultReader& part) {
+PartOfRun ComparePlans(const Recipe& run, const RunLayout& layout, ResultReader& part) {
   const Recipe& other = part.StoredRecipe();
   if (run.plan_text == other.plan_text) {
     if (auto difference = Difference(run, other)) return {PartPlan::kOther, *difference};
     if (!part.Layout().SameMissions(layout)) return {PartPlan::kOther, "its stages, arms or seed differ"};
-    return OfCode(PartPlan::kSame, run, other);
+    return {PartPlan::kSame, ""};
   }
   const std::set<std::string> learned = StagesWithNetworks(part);
-  if (GrowthOf(other, run, learned).Allowed()) return OfCode(PartPlan::kEarlier, run, other);
+  if (GrowthOf(other, run, learned).Allowed()) return {PartPlan::kEarlier, ""};
   Growth growth = GrowthOf(run, other, learned);
   if (growth.Allowed()) return {PartPlan::kGrown, std::move(growth.what)};
   return {PartPlan::kOther, std::move(growth.difference)};
+}
+
+PartOfRun FindPlan(const Recipe& run, const RunLayout& layout, ResultReader& part) {
+  PartOfRun found = ComparePlans(run, layout, part);
+  if (!found.Counts()) return found;
+  if (auto difference = CodeDifference(run.code, part.StoredRecipe().code))
+    return {PartPlan::kMixed, *difference};
+  return found;
 }
 
 std::optional<sweep::RunId> SameMission(const RunLayout& from, const sweep::RunId& id, const RunLayout& to) {

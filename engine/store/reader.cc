@@ -42,7 +42,7 @@ Connection OpenToRead(const std::string& dir) {
 
 ResultReader::ResultReader(const std::string& dir) : dir_(dir), database_(OpenToRead(dir)) {
   if (CheckFile(database_, FileUse::kRead) == FileKind::kEmpty)
-    throw UserError(fmt::format("{}: no results in it yet ({} is empty)", dir, kResultsFile));
+    throw NoResultsYet(fmt::format("{}: no results in it yet ({} is empty)", dir, kResultsFile));
   format_ = static_cast<int>(database_.Int("PRAGMA user_version"));
   tables_.emplace(database_);
   const Transaction moment(database_, Transaction::Kind::kRead);

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/check.h"
 #include "engine/mission/record.h"
 #include "engine/store/layout.h"
 #include "engine/store/networks.h"
@@ -49,6 +50,12 @@ struct ArmStatus {
   std::string stage, arm;
   std::int64_t planned = 0, done = 0, failed = 0, missing = 0;
   double simulated_s = 0, wall_s = 0;  // of the missions done; wall time summed over threads
+};
+
+// A results file without tables, as a writer leaves it that was killed at its very start.
+class NoResultsYet : public UserError {
+ public:
+  using UserError::UserError;
 };
 
 class ResultReader {

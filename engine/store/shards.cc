@@ -1,8 +1,12 @@
 #include "engine/store/shards.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 
+#include "engine/core/check.h"
 #include "engine/store/schema.h"
 
 namespace ed3r::store {
@@ -10,15 +14,37 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What is not there, or no more, holds nothing; of what cannot be looked at that is not known.
+void CheckAbsent(const fs::path& path, const std::error_code& error) {
+  if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory &&
+      error != std::errc::is_a_directory)
+    throw UserError(fmt::format("{}: {}", path.string(), error.message()));
+}
+
+std::vector<fs::path> Entries(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  std::error_code error;
+  fs::directory_iterator entry(folder, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error))
+    entries.push_back(entry->path());
+  CheckAbsent(folder, error);
+  return entries;
+}
+
 void AddTasks(const fs::path& stage, std::vector<std::string>& dirs) {
-  std::error_code error;  // a folder that is gone by now holds nothing
-  for (const fs::directory_entry& task : fs::directory_iterator(stage, error)) {
-    const std::uintmax_t bytes = fs::file_size(task.path() / kResultsFile, error);
-    if (!error && bytes > 0) dirs.push_back(task.path().string());
-  }
+  for (const fs::path& task : Entries(stage))
+    if (HoldsResults(task.string())) dirs.push_back(task.string());
 }
 
 }  // namespace
+
+bool HoldsResults(const std::string& dir) {
+  const fs::path file = fs::path(dir) / kResultsFile;
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  CheckAbsent(file, error);
+  return !error && bytes > 0;
+}
 
 std::vector<std::string> ShardDirs(const std::string& run_dir, const std::string& stage) {
   std::vector<std::string> dirs;
@@ -29,9 +55,7 @@ std::vector<std::string> ShardDirs(const std::string& run_dir, const std::string
 
 std::vector<std::string> ShardDirs(const std::string& run_dir) {
   std::vector<std::string> dirs;
-  std::error_code error;
-  for (const fs::directory_entry& stage : fs::directory_iterator(fs::path(run_dir) / "shards", error))
-    AddTasks(stage.path(), dirs);
+  for (const fs::path& stage : Entries(fs::path(run_dir) / "shards")) AddTasks(stage, dirs);
   std::sort(dirs.begin(), dirs.end());
   return dirs;
 }

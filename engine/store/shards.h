@@ -6,8 +6,11 @@
 
 namespace ed3r::store {
 
+// Whether DIR has a results file that is not empty. UserError where that cannot be seen.
+bool HoldsResults(const std::string& dir);
+
 // Folders below RUN/shards with a results file that is not empty, in order of their names. None where there is no such
-// folder.
+// folder; UserError where one cannot be looked into.
 std::vector<std::string> ShardDirs(const std::string& run_dir);
 std::vector<std::string> ShardDirs(const std::string& run_dir, const std::string& stage);
 

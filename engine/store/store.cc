@@ -36,9 +36,8 @@ std::string HostName() {
 
 class SqliteStore final : public ResultStore {
  public:
-  SqliteStore(const std::string& dir, const Recipe& recipe, const RunLayout& layout, OtherCode other_code,
-              Repair repair)
-      : layout_(layout), there_(layout), file_(dir, recipe, layout, other_code, repair) {
+  SqliteStore(const std::string& dir, const Recipe& recipe, const RunLayout& layout, const Taking& taking)
+      : layout_(layout), there_(layout), file_(dir, recipe, layout, taking) {
     if (file_.grown().empty()) {
       Transaction transaction(file_.database(), Transaction::Kind::kWrite);
       file_.TakeUp(recipe, layout_);
@@ -213,8 +212,8 @@ class SqliteStore final : public ResultStore {
 }  // namespace
 
 std::unique_ptr<ResultStore> ResultStore::Open(const std::string& dir, const Recipe& recipe,
-                                               const RunLayout& layout, OtherCode other_code, Repair repair) {
-  return std::make_unique<SqliteStore>(dir, recipe, layout, other_code, repair);
+                                               const RunLayout& layout, const Taking& taking) {
+  return std::make_unique<SqliteStore>(dir, recipe, layout, taking);
 }
 
 }  // namespace ed3r::store

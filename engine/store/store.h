@@ -17,6 +17,7 @@
 #include "engine/store/networks.h"
 #include "engine/store/recipe.h"
 #include "engine/store/records.h"
+#include "engine/store/store_file.h"
 
 namespace ed3r::store {
 
@@ -24,11 +25,10 @@ class ResultStore {
  public:
   // Makes DIR and the file when missing, continues it when there; begins a session with recipe.notes. A plan that asks for
   // more missions or arms than the file's, and leaves those there as they are, takes its place (growth.h) together with the
-  // first mission, failure or network that is put, so that a run that is refused before keeps its plan; `repair` says what
+  // first mission, failure or network that is put, so that a run that is refused before keeps its plan; `taking` says what
   // becomes of damaged missions then. Until then other readers see the file's own plan, and this object what it will be.
   static std::unique_ptr<ResultStore> Open(const std::string& dir, const Recipe& recipe,
-                                           const RunLayout& layout, OtherCode other_code = OtherCode::kRefuse,
-                                           Repair repair = Repair::kNo);
+                                           const RunLayout& layout, const Taking& taking = {});
 
   // Ends the session. What was not committed is dropped.
   virtual ~ResultStore() = default;

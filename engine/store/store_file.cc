@@ -64,7 +64,7 @@ CodeIdentities CodeOfBoth(const CodeIdentities& there, CodeIdentities here) {
 
 // "" where the recipes are the same, or how this one grows what is there.
 std::string CheckSameRun(Connection& database, const std::string& dir, const Recipe& recipe,
-                         const RunLayout& layout, OtherCode other_code) {
+                         const RunLayout& layout, const Taking& taking) {
   const Recipe there = ReadRecipe(database);
   const bool same_plan = there.plan_text == recipe.plan_text;
   const Growth growth = same_plan ? Growth{Difference(there, recipe).value_or(""), ""}
@@ -74,7 +74,7 @@ std::string CheckSameRun(Connection& database, const std::string& dir, const Rec
         fmt::format("{}: holds results of another recipe: {}; give another --out, or remove that folder", dir,
                     growth.difference));
   const auto code = CodeDifference(there.code, same_plan ? recipe.code : CodeOfBoth(there.code, recipe.code));
-  if (code && other_code == OtherCode::kRefuse)
+  if (code && taking.other_code == OtherCode::kRefuse)
     throw UserError(
         fmt::format("{}: holds results of another recipe: {}; give another --out, or --accept-mixed to "
                     "continue it with other code",
@@ -82,22 +82,39 @@ std::string CheckSameRun(Connection& database, const std::string& dir, const Rec
   if (same_plan && !ReadLayout(database).SameMissions(layout))
     throw UserError(fmt::format(
         "{}: holds results of other stages, arms or seed; give another --out, or remove that folder", dir));
+  if (!growth.what.empty() && !taking.may_grow)
+    throw UserError(fmt::format(
+        "{}: --only-failed flies nothing that is missing, and the plan asks for more than is there ({}); "
+        "leave --only-failed out, or give the plan that is there",
+        dir, growth.what));
   return growth.what;
+}
+
+// Two writers by two names would each have a journal of their own, and a copy that was made by a link would change with the run.
+void CheckOneName(const std::string& file) {
+  std::error_code absent;
+  const std::uintmax_t names = fs::hard_link_count(file, absent);
+  if (!absent && names > 1 && fs::is_regular_file(file, absent))
+    throw UserError(fmt::format(
+        "{}: this file has {} names (hard links), and writing by one would change or damage what the others "
+        "show; give it a file of its own (cp FILE COPY, mv COPY FILE)",
+        file, names));
 }
 
 }  // namespace
 
 StoreFile::StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout,
-                     OtherCode other_code, Repair repair)
+                     const Taking& taking)
     : dir_(dir) {
   first_created_dir_ = MakeDirectory(dir);
   Lock();
   created_ = !fs::exists(FileIn(dir));
+  CheckOneName(FileIn(dir));
   try {
-    OpenOrCreate(recipe, layout, other_code, repair);
+    OpenOrCreate(recipe, layout, taking);
   } catch (const SharedMemoryError&) {
     rollback_journal_ = true;
-    OpenOrCreate(recipe, layout, other_code, repair);
+    OpenOrCreate(recipe, layout, taking);
   }
 }
 
@@ -155,17 +172,16 @@ void StoreFile::CheckBeforeGrowth(Repair repair) {
   RemoveMissions(*database_, repaired_);
 }
 
-void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code,
-                             Repair repair) {
+void StoreFile::OpenOrCreate(const Recipe& recipe, const RunLayout& layout, const Taking& taking) {
   Connect();
   empty_ = CheckFile(*database_, FileUse::kWrite) == FileKind::kEmpty;
-  if (!empty_) grown_ = CheckSameRun(*database_, dir_, recipe, layout, other_code);
+  if (!empty_) grown_ = CheckSameRun(*database_, dir_, recipe, layout, taking);
   SetJournal(empty_);  // only now: a refused file stays as it was
   database_->Execute(fmt::format("PRAGMA cache_size = -{}", kCacheKib));
   database_->Execute("PRAGMA secure_delete = OFF");  // Debian's default wipes freed space
   // Also for its own sake: what a file system cannot do for a writer shows now, where another journal can still be taken.
   Transaction transaction(*database_, Transaction::Kind::kWrite);
-  if (!grown_.empty()) CheckBeforeGrowth(repair);
+  if (!grown_.empty()) CheckBeforeGrowth(taking.repair);
   if (!repaired_.empty()) transaction.Commit();
 }
 

@@ -14,6 +14,13 @@
 
 namespace ed3r::store {
 
+// What may become of a file that is there.
+struct Taking {
+  OtherCode other_code = OtherCode::kRefuse;
+  Repair repair = Repair::kNo;
+  bool may_grow = true;
+};
+
 // While it is open on a disk of this machine, the file is in WAL mode: readers of other processes see every commit and never
 // wait. Closing brings it back to one plain file, unless a reader is still looking (then the next session does).
 // Where several machines may see the directory, or the file system has no locks or no shared memory for it, the file is
@@ -22,11 +29,11 @@ namespace ed3r::store {
 class StoreFile {
  public:
   // Makes DIR and the file when missing, without tables yet: TakeUp does the rest. UserError, and nothing changed, when the
-  // file holds the results of another recipe or layout, is not a store, or has another writer; results of other code are
-  // taken on where `other_code` accepts it. A recipe that asks for more of the same may grow the file (growth.h), unless
-  // there are damaged missions in it: UserError, or they are taken out at once with Repair::kYes.
-  StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout,
-            OtherCode other_code = OtherCode::kRefuse, Repair repair = Repair::kNo);
+  // file holds the results of another recipe or layout, is not a store, has another name (a hard link: SQLite's journals go
+  // by name), or has another writer; results of other code are taken on where `taking` accepts it. A recipe that asks for more
+  // of the same may grow the file (growth.h), unless there are damaged missions in it: UserError, or they are taken out at once
+  // with Repair::kYes.
+  StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout, const Taking& taking = {});
   ~StoreFile();
   StoreFile(const StoreFile&) = delete;
   StoreFile& operator=(const StoreFile&) = delete;
@@ -51,7 +58,7 @@ class StoreFile {
   void Lock();
   void Connect();
   void SetJournal(bool empty);
-  void OpenOrCreate(const Recipe& recipe, const RunLayout& layout, OtherCode other_code, Repair repair);
+  void OpenOrCreate(const Recipe& recipe, const RunLayout& layout, const Taking& taking);
   void CheckBeforeGrowth(Repair repair);
 
   std::string dir_;

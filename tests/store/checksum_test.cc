@@ -121,7 +121,7 @@ TEST_F(ChecksumTest, MissionsOfEachCodeThatContinuedARunAreItsOwn) {
   newer.code["flight"] = {"89abcdef"};
   const std::string dir = temp_ / "mixed";
   WriteStore(dir, {{0, 0, 1}});
-  ResultStore::Open(dir, newer, TestLayout(), OtherCode::kAccept)
+  ResultStore::Open(dir, newer, TestLayout(), {.other_code = OtherCode::kAccept})
       ->Put({0, 0, 2}, TestRecord({0, 0, 2}), 0.25);
   {
     const auto store = ResultStore::Open(dir, newer, TestLayout());

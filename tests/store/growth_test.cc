@@ -210,10 +210,14 @@ TEST_F(GrowthTest, ADamagedRunDoesNotGrow) {
       database.Execute(change);
     }
     EXPECT_TRUE(Contains(UserErrorOf([&] { Open(dir, more); }), "is damaged"));
+    const Taking only_what_is_there{.repair = Repair::kYes, .may_grow = false};
+    EXPECT_TRUE(Contains(
+        UserErrorOf([&] { ResultStore::Open(dir, RecipeOf(more), LayoutOf(more), only_what_is_there); }),
+        "the plan asks for more than is there (stage"));
+    EXPECT_EQ(ResultReader(dir).FindDamage().size(), 1u) << "what is refused has repaired nothing";
     EXPECT_EQ(ResultReader(dir).Layout().stages[0].missions, 10);
     {
-      const auto store =
-          ResultStore::Open(dir, RecipeOf(more), LayoutOf(more), OtherCode::kRefuse, Repair::kYes);
+      const auto store = ResultStore::Open(dir, RecipeOf(more), LayoutOf(more), {.repair = Repair::kYes});
       EXPECT_EQ(store->Repaired().size(), 1u);
       EXPECT_TRUE(store->FindDamage().empty());
     }
@@ -358,8 +362,16 @@ TEST_F(GrowthTest, ShardsGrowOneByOneAndMergeIntoTheRunOfBefore) {
   const std::vector<std::string> parts = {temp_ / "part0", temp_ / "part1"};
   MergeStores(Dir(), parts);
   Fly(parts[0], more, 0, 2);
-  EXPECT_TRUE(
-      Contains(UserErrorOf([&] { MergeStores(Dir(), parts); }), "cannot be merged: the plan differs"));
+  const auto missions = [](const std::string& dir) { return ResultReader(dir).CountMissions(); };
+  const std::int64_t before = missions(Dir()), grown = missions(parts[0]);
+  for (int again = 0; again < 2; ++again) {  // in either order, into a run of before and of after
+    MergeStores(Dir(), again == 0 ? parts : std::vector<std::string>{parts[1], parts[0]});
+    EXPECT_EQ(ResultReader(Dir()).Layout().Missions(), 3 * 15);
+    EXPECT_EQ(missions(Dir()), before + grown - before / 2);
+    EXPECT_TRUE(ResultReader(Dir()).FindDamage().empty());
+  }
+  MergeStores(temp_ / "other", {parts[1], parts[0]});
+  EXPECT_EQ(DigestOfDir(temp_ / "other"), DigestOfDir(Dir()));
   Fly(parts[1], more, 1, 2);
   MergeStores(Dir(), parts);
   EXPECT_EQ(DigestOfDir(Dir()), Fresh(more));

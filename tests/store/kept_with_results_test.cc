@@ -46,7 +46,8 @@ TEST(MixedCodeTest, IsRefusedUnlessAcceptedAndThenRemembered) {
       Contains(UserErrorOf([&] { ResultStore::Open(temp / "run", WithFlightCode("ffff"), TestLayout()); }),
                "the code of flight is 0123abcd there and ffff here; give another --out, or --accept-mixed"));
   EXPECT_FALSE(MixedCode(ResultReader(temp / "run").StoredRecipe().code));
-  ResultStore::Open(temp / "run", WithFlightCode("ffff"), TestLayout(), OtherCode::kAccept)->Commit();
+  ResultStore::Open(temp / "run", WithFlightCode("ffff"), TestLayout(), {.other_code = OtherCode::kAccept})
+      ->Commit();
   const CodeIdentities code = ResultReader(temp / "run").StoredRecipe().code;
   EXPECT_TRUE(MixedCode(code));
   EXPECT_EQ(CodeText(code), "flight 0123abcd and ffff, training 4567");
@@ -57,10 +58,19 @@ TEST(MixedCodeTest, IsRefusedUnlessAcceptedAndThenRemembered) {
       Contains(UserErrorOf([&] { ResultStore::Open(temp / "run", WithFlightCode("aaaa"), TestLayout()); }),
                "the code of flight is 0123abcd and ffff there and aaaa here"));
   WriteStore(temp / "pure", {{0, 0, 1}});
-  EXPECT_TRUE(Contains(UserErrorOf([&] {
-                         MergeStores(temp / "new", {temp / "pure", temp / "run"});
-                       }),
-                       "cannot be merged: the code of flight is"));
+  // That both may be together was decided in `run`; of a third nobody has.
+  EXPECT_EQ(MergeStores(temp / "new", {temp / "pure", temp / "run"}).added, 2);
+  EXPECT_EQ(CodeText(ResultReader(temp / "new").StoredRecipe().code), CodeText(code));
+  WriteStore(temp / "third", {{0, 0, 2}}, WithFlightCode("aaaa"));
+  EXPECT_TRUE(Contains(
+      UserErrorOf([&] {
+        MergeStores(temp / "new", {temp / "pure", temp / "third"});
+      }),
+      "cannot be merged: the code of flight is 0123abcd there and aaaa here; --accept-mixed merges"));
+  EXPECT_EQ(MergeStores(temp / "new", {temp / "third"}, OtherCode::kAccept).added, 1);
+  EXPECT_EQ(CodeText(ResultReader(temp / "new").StoredRecipe().code),
+            "flight 0123abcd and aaaa and ffff, training 4567");
+  EXPECT_TRUE(ResultReader(temp / "new").FindDamage().empty());
 }
 
 FlownNetworks TwoNetworks() {

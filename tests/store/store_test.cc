@@ -203,6 +203,20 @@ TEST(StoreTest, ASecondWriterIsRefused) {
   EXPECT_EQ(OpenTest(temp / "run")->Stored().size(), 1u);
 }
 
+TEST(StoreTest, AFileOfTwoNamesIsReadAndNotWritten) {
+  const TempDir temp;
+  WriteStore(temp / "run", {{0, 0, 0}});
+  std::filesystem::create_directories(temp / "copy");
+  std::filesystem::create_hard_link(ResultsIn(temp / "run"), ResultsIn(temp / "copy"));
+  const std::string digest = DigestOfDir(temp / "copy");
+  for (const char* name : {"run", "copy"})
+    EXPECT_TRUE(Contains(UserErrorOf([&] { OpenTest(temp / name); }),
+                         ResultsIn(temp / name) + ": this file has 2 names"));
+  EXPECT_EQ(DigestOfDir(temp / "copy"), digest);
+  std::filesystem::remove(ResultsIn(temp / "copy"));
+  WriteStore(temp / "run", {{0, 0, 1}});
+}
+
 TEST(StoreTest, DirectoriesThatLinkToOneFileHaveOneWriter) {
   const TempDir temp;
   WriteStore(temp / "run", {{0, 0, 0}});

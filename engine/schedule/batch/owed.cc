@@ -18,12 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool HoldsResults(const std::string& dir) {
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(fs::path(dir) / store::kResultsFile, error);
-  return !error && bytes > 0;
-}
-
 class Books {
  public:
   Books(const sweep::SweepPlan& plan, const std::string& run_dir, const std::string& cache_dir,
@@ -33,7 +27,7 @@ class Books {
         run_dir_(run_dir),
         cache_dir_(cache_dir),
         half_width_(half_width) {
-    if (!HoldsResults(run_dir)) return;
+    if (!store::HoldsResults(run_dir)) return;
     store::ResultReader reader(run_dir);
     CheckPlan(reader);
     merged_ = reader.Stored();
