@@ -4,33 +4,43 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "engine/app/commands.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/schedule/training_stage.h"
 #include "engine/store/difference.h"
+#include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
+#include "engine/store/shards.h"
 
 namespace ed3r::app {
 namespace {
 
+struct Damage {
+  std::string store;
+  store::DamagedMission mission;
+};
+
 struct Verification {
-  std::int64_t missions = 0;
-  std::vector<store::DamagedMission> damage;
+  std::int64_t stores = 0, missions = 0;
+  std::vector<Damage> damage;
   std::vector<std::string> other;  // lines on what is not a mission
 };
 
-Verification Verify(const std::string& dir) {
-  Verification found;
+void VerifyStore(const std::string& dir, Verification& found) {
+  ++found.stores;
   try {
     store::ResultReader reader(dir);
-    found.missions = reader.CountMissions();
+    const std::int64_t missions = reader.CountMissions();
+    found.missions += missions;
     if (!reader.Tables().checked())
       found.other.push_back(
-          fmt::format("{}: {}, {}", dir, Counted(found.missions, "mission"), store::kNothingToCompare));
-    found.damage = reader.FindDamage();
+          fmt::format("{}: {}, {}", dir, Counted(missions, "mission"), store::kNothingToCompare));
+    for (store::DamagedMission& damage : reader.FindDamage())
+      found.damage.push_back({dir, std::move(damage)});
     reader.Files();
     schedule::NetworkShelf::From(reader.Networks(), dir);
   } catch (const UserError& error) {
@@ -40,6 +50,14 @@ Verification Verify(const std::string& dir) {
   } catch (const InternalError& error) {  // SQLite's own tables are not what they should be
     found.other.emplace_back(error.what());
   }
+}
+
+// All that the run's tables are made of: its own store, and those of its shards.
+Verification Verify(const std::string& dir) {
+  const std::vector<std::string> shards = store::ShardDirs(dir);
+  Verification found;
+  if (shards.empty() || store::HoldsResults(dir)) VerifyStore(dir, found);
+  for (const std::string& shard : shards) VerifyStore(shard, found);
   return found;
 }
 
@@ -47,21 +65,25 @@ int PrintVerification(const std::string& dir, const Verification& found, bool js
   const bool whole = found.damage.empty() && found.other.empty();
   if (json) {
     nlohmann::ordered_json object = {{"whole", whole},
+                                     {"stores", found.stores},
                                      {"missions", found.missions},
                                      {"damaged", nlohmann::ordered_json::array()},
                                      {"other", found.other}};
-    for (const store::DamagedMission& damage : found.damage)
-      object["damaged"].push_back({{"mission", damage.name}, {"problem", damage.what}});
+    for (const auto& [store, mission] : found.damage)
+      object["damaged"].push_back({{"mission", mission.name}, {"problem", mission.what}, {"store", store}});
     fmt::print("{}\n", object.dump(2));
     return whole ? kDone : kFailedInside;
   }
-  for (const store::DamagedMission& damage : found.damage) fmt::print("{}: {}\n", damage.name, damage.what);
+  for (const auto& [store, mission] : found.damage)
+    fmt::print("{}{}: {}\n", found.stores > 1 ? store + ": " : "", mission.name, mission.what);
   for (const std::string& line : found.other) fmt::print("{}\n", line);
   if (whole)
-    fmt::print("{}: {} whole\n", dir, Counted(found.missions, "mission"));
+    fmt::print("{}: {} whole{}\n", dir, Counted(found.missions, "mission"),
+               found.stores > 1 ? fmt::format(" in {} stores", found.stores) : "");
   else if (!found.damage.empty())
-    fmt::print("{}: {} damaged; 'ed3r run SWEEP --repair' deletes them and flies them again\n", dir,
-               Counted(static_cast<std::int64_t>(found.damage.size()), "mission"));
+    fmt::print("{}: {} damaged; 'ed3r run SWEEP --repair'{} deletes them and flies them again\n", dir,
+               Counted(static_cast<std::int64_t>(found.damage.size()), "mission"),
+               found.stores > 1 ? " with the --out and --shard of that store" : "");
   return whole ? kDone : kFailedInside;
 }
 
@@ -113,7 +135,8 @@ Command AddVerify(Program& program) {
       "verify",
       "Compares everything stored with its checksums and names what is damaged; exit 1 where anything is, or "
       "has no checksums");
-  parser.Option("DIR", options->dir, "Run directory").Required();
+  parser.Option("DIR", options->dir, "Run directory; shards in it, merged or not, are compared, too")
+      .Required();
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] { return PrintVerification(options->dir, Verify(options->dir), options->json); }};
 }
@@ -126,16 +149,21 @@ Command AddDiff(Program& program) {
   auto options = std::make_shared<Options>();
   CommandLine parser = program.AddCommand(
       "diff", "The first mission, timestep and quantity in which two runs differ; exit 1 where they do");
-  parser.Option("A", options->a, "Run directory").Required();
-  parser.Option("B", options->b, "Run directory").Required();
+  parser.Option("A", options->a, "Run directory; shards in it count, merged or not").Required();
+  parser.Option("B", options->b, "Run directory, likewise").Required();
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
-            store::ResultReader a(options->a), b(options->b);
+            const store::GatheredShards runs[] = {store::GatheredShards(options->a),
+                                                  store::GatheredShards(options->b)};
+            store::ResultReader a(runs[0].dir()), b(runs[1].dir());
             const store::RunDifference difference = store::DiffRuns(a, b);
             if (difference.compared + difference.only_here + difference.only_there == 0)
               throw UserError(
                   fmt::format("{} and {}: no mission of an arm that both have", options->a, options->b));
-            return PrintDifference(difference, options->json);
+            const int status = PrintDifference(difference, options->json);
+            FlushOutput();
+            for (const store::GatheredShards& run : runs) TellNotes(run.notes());
+            return status;
           }};
 }
 

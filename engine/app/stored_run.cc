@@ -20,13 +20,14 @@ std::string JoinedLines(const std::vector<std::string>& lines) {
   return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
-sweep::SweepPlan StoredPlan(const store::ResultReader& reader, const store::RestoredFiles& files) {
+sweep::SweepPlan StoredPlan(const store::ResultReader& reader, const store::RestoredFiles& files,
+                            const std::string& dir) {
   const store::Recipe& recipe = reader.StoredRecipe();
-  sweep::SweepPlan plan = sweep::PlanOf(sweep::ReadPlanText(recipe.plan_text), reader.dir());
+  sweep::SweepPlan plan = sweep::PlanOf(sweep::ReadPlanText(recipe.plan_text), dir);
   if (const auto code = store::CodeDifference(recipe.code, schedule::CodeOf(plan)))
-    throw UserError(fmt::format("{}: {}; build that version to fly its missions again", reader.dir(), *code));
+    throw UserError(fmt::format("{}: {}; build that version to fly its missions again", dir, *code));
   if (plan.CanonicalText() != recipe.plan_text)
-    throw UserError(fmt::format("{}: its plan is of another version of ed3r", reader.dir()));
+    throw UserError(fmt::format("{}: its plan is of another version of ed3r", dir));
   for (sweep::Stage& stage : plan.stages)
     for (sweep::Arm& arm : stage.arms)
       for (const auto& [key, called] : arm.files) {
@@ -37,11 +38,12 @@ sweep::SweepPlan StoredPlan(const store::ResultReader& reader, const store::Rest
   return plan;
 }
 
-void CheckSameInputs(const store::ResultReader& reader, const std::map<std::string, std::string>& here) {
+void CheckSameInputs(const store::ResultReader& reader, const std::string& dir,
+                     const std::map<std::string, std::string>& here) {
   for (const auto& [name, fingerprint] : reader.StoredRecipe().inputs) {
     const auto found = here.find(name);
     if (found == here.end() || found->second != fingerprint)
-      throw UserError(fmt::format("{}: {} has changed since it was flown", reader.dir(), name));
+      throw UserError(fmt::format("{}: {} has changed since it was flown", dir, name));
   }
 }
 
@@ -91,12 +93,14 @@ std::map<std::string, std::string> NotesOf(const SweepArguments& arguments) {
 }
 
 StoredRun::StoredRun(const std::string& dir, const std::string& cache_dir)
-    : reader_(dir),
+    : dir_(dir),
+      gathered_(dir),
+      reader_(gathered_.dir()),
       cache_dir_(cache_dir),
       files_(reader_),
-      plan_(StoredPlan(reader_, files_)),
+      plan_(StoredPlan(reader_, files_, dir)),
       inputs_(plan_) {
-  CheckSameInputs(reader_, inputs_.Fingerprints(plan_));
+  CheckSameInputs(reader_, dir, inputs_.Fingerprints(plan_));
 }
 
 sweep::RunId StoredRun::Find(const std::string& mission) const {
@@ -130,12 +134,12 @@ mission::MissionTask StoredRun::Task(const sweep::RunId& id) {
     throw UserError(
         fmt::format("{}: arm {}: the decisions of strategy {} came from a program, which alone can fly its "
                     "missions again",
-                    reader_.dir(), arm.name, agents::kOutsideStrategy));
+                    dir_, arm.name, agents::kOutsideStrategy));
   if (networks_ == nullptr && schedule::NeedsTraining(arm.config)) {
     const store::FlownNetworks flown = reader_.Networks();
     networks_ = flown.uses.empty() ? schedule::TrainNetworks(plan_, {"", reader_.dir(), cache_dir_,
                                                                      schedule::ThreadsFor(0), nullptr})
-                                   : schedule::NetworkShelf::From(flown, reader_.dir());
+                                   : schedule::NetworkShelf::From(flown, dir_);
   }
   return schedule::TaskOf(plan_, inputs_, networks_.get(), id);
 }

@@ -7,6 +7,7 @@
 
 #include "engine/app/sweep_arguments.h"
 #include "engine/schedule/sweep_runner.h"
+#include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
 #include "engine/store/restored_files.h"
 
@@ -17,8 +18,8 @@ std::map<std::string, std::string> NotesOf(const SweepArguments& arguments);
 
 class StoredRun {
  public:
-  // Builds the plan and its worlds from what the run directory keeps, and nothing else. Throws UserError where this is
-  // other code than that which flew.
+  // Builds the plan and its worlds from what the run directory keeps, and nothing else; shards in it count, merged or not.
+  // Throws UserError where this is other code than that which flew.
   StoredRun(const std::string& dir, const std::string& cache_dir);
 
   // "ARM/NUMBER", of an arm that one stage alone has, or "STAGE/ARM/NUMBER", numbers from 0. Throws UserError that names the
@@ -34,6 +35,8 @@ class StoredRun {
   const schedule::Inputs& SharedInputs() const { return inputs_; }
 
  private:
+  std::string dir_;
+  store::GatheredShards gathered_;
   store::ResultReader reader_;
   std::string cache_dir_;
   store::RestoredFiles files_;

@@ -120,6 +120,29 @@ TEST_F(VerifyTest, EveryCommandRefusesADamagedMissionAndARepairFliesItAgain) {
   EXPECT_EQ(Ed3r("verify " + dir).status, 0);
 }
 
+// Shards of the plan before it grew, beside a run that has the grown one and lacks missions of it.
+TEST_F(VerifyTest, ShardsCountForEveryReader) {
+  const fs::path run = scratch_ / "parts", shard = run / "shards/online/00001";
+  ASSERT_EQ(Ed3r(FlyRbs(shard, "--shard 1/2")).status, 0);
+  const std::string few = FlyRbs(run, "--shard 2/2");
+  ASSERT_EQ(Ed3r(fmt::format("{} --missions online=6", few)).status, 0);
+  const std::string dir = run.string(), whole = Run().string();
+  EXPECT_EQ(json::parse(Ed3r("status --json " + dir).out)["arms"][0]["done"], 5);
+  EXPECT_EQ(Ed3r("verify " + dir).out, dir + ": 5 missions whole in 2 stores\n");
+  EXPECT_TRUE(Contains(Ed3r("diff " + dir + " " + whole).out,
+                       "4 missions compared, 0 differ; 1 only in the first, 0 only in the second"));
+  EXPECT_EQ(json::parse(Ed3r("digest --json " + dir).out)["missions"], 5);
+  for (const int mission : {0, 1})
+    EXPECT_EQ(
+        Ed3r(fmt::format("replay {} rbs/{} --out {}", dir, mission, (scratch_ / "replay").string())).status,
+        0);
+  Sql(shard, "UPDATE missions SET total_j = 1");
+  const CommandResult verified = Ed3r("verify " + dir);
+  EXPECT_EQ(verified.status, 1);
+  EXPECT_TRUE(Contains(verified.out, shard.string() + ": stage online, arm rbs, mission ")) << verified.out;
+  EXPECT_EQ(json::parse(Ed3r("verify --json " + dir).out)["damaged"][0]["store"], shard.string());
+}
+
 TEST_F(VerifyTest, StatusNamesAMissionThatIsNotPlanned) {
   Sql(Run(), "UPDATE missions SET mission = 9 WHERE mission = 3");
   const CommandResult status = Ed3r("status " + Run().string());
