@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import warnings
 
 import numpy as np
 
@@ -352,6 +353,25 @@ class PythonTest(unittest.TestCase):
         self.assertFalse(path.exists())
         with self.assertRaisesRegex(ValueError, "arm 'mine' of strategy external needs one"):
             ed3r.fly(self.sweep, out=self.root / "none")
+
+    def test_a_policy_that_changes_while_it_flies_is_told(self):
+        class Counting:
+            calls = 0
+
+            def __call__(self, obs, info):
+                self.calls += 1
+                return np.zeros((len(obs), 6))
+
+        out = self.root / "counting"
+        counting = Counting()
+        with self.assertWarnsRegex(UserWarning, "policy: holds other values than before it flew"):
+            ed3r.fly(self.sweep, counting, out, missions=2)
+        with self.assertRaisesRegex(ed3r.UserError, "the code of policy is"):
+            ed3r.fly(self.sweep, counting, out, missions=2)
+        with warnings.catch_warnings(), self.subTest("a version says that it is one"):
+            warnings.simplefilter("error")
+            ed3r.fly(self.sweep, counting, self.root / "versioned", missions=2, version="one")
+            ed3r.fly(self.sweep, turning, self.root / "steady", missions=2)
 
     def test_bad_input_is_one_line(self):
         with self.assertRaisesRegex(ed3r.UserError, "arm: 'mien' is not in the sweep.*did you mean mine"):

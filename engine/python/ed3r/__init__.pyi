@@ -137,7 +137,7 @@ def fly(sweep: str | os.PathLike[str], policy: Policy | Mapping[str, Policy] | N
     of numbers, your own functions, classes, objects and enums, and tuples, lists, sets and dicts of them. A policy that holds
     anything else (a tensor, a random generator, an object of a library or with __slots__), whose source cannot be read, or that
     reaches values which its source does not name (globals, vars, locals, eval, exec, __import__, a descriptor or a metaclass of
-    yours) is refused without a version. Not looked at is what it takes out of modules (settings.speed) and files: give one there.
+    yours) is refused without a version. One that holds other values afterwards is told in a warning. Not looked at is what it takes out of modules (settings.speed) and files: give one there.
     """
 
 def save_network(path: str | os.PathLike[str], agent: str, weights: Sequence[ArrayLike], biases: Sequence[ArrayLike], *,

@@ -2,6 +2,7 @@
 
 import difflib
 import os
+import warnings
 
 import numpy as np
 
@@ -55,6 +56,13 @@ def _drive(fleet, policy):
         fleet.detect(executions)
 
 
+def _has_changed(policy, version, identity):
+    try:
+        return identity_of(policy, version) != identity
+    except UserError:  # it holds what has no text now
+        return True
+
+
 def fly(sweep, policy=None, out=None, *, seed=None, missions=None, settings=(), num_envs=64, threads=0, version=None,
         cache="results/cache"):
     """Flies what is missing of a sweep, its arms of strategy external by `policy`; see the stub."""
@@ -63,6 +71,11 @@ def fly(sweep, policy=None, out=None, *, seed=None, missions=None, settings=(), 
     name, arms = _core.sweep_outline(request)
     policies = _check_policy(policy, arms)
     out = os.path.join("results", "runs", name) if out is None else _arguments.path("out", out)
-    _core.fly(request, out, _arguments.path("cache", cache), identity_of(policy, version), num_envs, threads,
+    identity = identity_of(policy, version)
+    _core.fly(request, out, _arguments.path("cache", cache), identity, num_envs, threads,
               lambda fleet: _drive(fleet, policies[fleet.arm]))
+    if _has_changed(policy, version, identity):
+        warnings.warn(f"policy: holds other values than before it flew {out}: unless they hang on info['mission'], results "
+                      "depend on the order of flight; and as it is now a second call refuses it as another policy, which a "
+                      "version prevents", stacklevel=2)
     return Run(out)
