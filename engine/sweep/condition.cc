@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <filesystem>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 
@@ -78,6 +80,13 @@ double NumberFrom(const std::string& text) {
   return value;
 }
 
+// One file has many names; a word that stands in a file's place is itself.
+std::string FileCalled(const std::string& name) {
+  std::error_code error;
+  const std::filesystem::path file = std::filesystem::canonical(name, error);
+  return error ? name : file.string();
+}
+
 template <class T>
 bool Compares(const T& a, Relation relation, const T& b) {
   switch (relation) {
@@ -108,7 +117,7 @@ struct Condition::Expression {
   Pointer left, right;  // of or, and; `not` has only a left one
   Operand a, b;         // of a comparison
   Relation relation = Relation::kEqual;
-  bool numbers = false;
+  bool numbers = false, files = false;
 
   bool Holds(const Config& config) const {
     switch (kind) {
@@ -123,7 +132,8 @@ struct Condition::Expression {
     }
     const std::string x = a.is_parameter ? GetParameter(config, a.text) : a.text;
     const std::string y = b.is_parameter ? GetParameter(config, b.text) : b.text;
-    return numbers ? Compares(NumberFrom(x), relation, NumberFrom(y)) : Compares(x, relation, y);
+    if (numbers) return Compares(NumberFrom(x), relation, NumberFrom(y));
+    return files ? Compares(FileCalled(x), relation, FileCalled(y)) : Compares(x, relation, y);
   }
 };
 
@@ -277,6 +287,7 @@ class Parser {
     Operand& b = comparison.b;
     const std::string& key = a.is_parameter ? a.text : b.text;
     comparison.numbers = IsNumber(key);
+    comparison.files = NamesAFile(key);
     if (a.is_parameter && b.is_parameter) {
       if (IsNumber(b.text) != comparison.numbers)
         FailAt(at_, fmt::format("where: {} and {} cannot be compared: one is a number", a.text, b.text));

@@ -5,7 +5,7 @@
 // in which `not` binds tighter than `and`, and `and` tighter than `or`; == and != compare anything of the
 // same type, < <= > >= only numbers. Each side is a parameter's key, a number, a word, or text in quotes; at
 // least one is a parameter. A value must be one that the parameter may have. Numbers are compared exactly, as
-// the doubles that they read to.
+// the doubles that they read to; files by what they are, however each is called.
 #pragma once
 
 #include <memory>

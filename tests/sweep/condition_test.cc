@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "engine/core/check.h"
 
 namespace ed3r::sweep {
@@ -55,6 +57,24 @@ TEST(ConditionTest, ComparesWords) {
   EXPECT_TRUE(Holds("strategy != \"a word (or two)\""));
   EXPECT_TRUE(Holds("mission.sites==all"));
   EXPECT_TRUE(Holds("agents.early_completion == true"));
+}
+
+TEST(ConditionTest, AFileIsOneByWhateverName) {
+  const std::filesystem::path sweeps = ED3R_SOURCE_DIR "/sweeps";
+  Config config;
+  config.mission.world = (sweeps / "worlds/ridges.yaml").string();
+  const auto holds = [&](const std::filesystem::path& file) {
+    return Parsed("mission.world == '" + file.string() + "'").Holds(config);
+  };
+  EXPECT_TRUE(holds(sweeps / "worlds/ridges.yaml"));
+  EXPECT_TRUE(holds(sweeps / "worlds/./../worlds/ridges.yaml"));
+  EXPECT_TRUE(holds(std::filesystem::relative(config.mission.world)));
+  const std::filesystem::path link = std::filesystem::path(::testing::TempDir()) / "ed3r_condition_link.yaml";
+  std::filesystem::remove(link);
+  std::filesystem::create_symlink(config.mission.world, link);
+  EXPECT_TRUE(holds(link));
+  std::filesystem::remove(link);
+  EXPECT_FALSE(holds(sweeps / "worlds/cascades.yaml"));
 }
 
 TEST(ConditionTest, NotBindsTighterThanAndThanOr) {
