@@ -144,6 +144,7 @@ int Run(const Options& options) {
   sweep.notes.emplace("sweep question", plan.question);
   const schedule::SweepSummary summary = schedule::RunSweep(plan, inputs, sweep);
 
+  const store::StateOfFile told = store::LookAtFile(dir);
   std::string table;
   if (!options.quiet) {
     const bool part = shard.count > 1, ended = !summary.flown.interrupted;
@@ -158,7 +159,7 @@ int Run(const Options& options) {
   if (options.profile) fmt::print("time: {}\n", summary.profile.Text());
   if (summary.flown.interrupted) return ToldEnd();
   if (all_of_it && summary.flown.failed == 0 && summary.waiting_stage.empty())
-    RememberFinishedRun(dir, summary.stored_before + summary.flown.stored, table,
+    RememberFinishedRun(plan, dir, told, summary.stored_before + summary.flown.stored, table,
                         NetworksText(summary.networks));
   return summary.flown.failed > 0 ? kMissionsFailed : kDone;
 }

@@ -9,7 +9,6 @@
 #include "engine/core/version.h"
 #include "engine/schedule/input_files.h"
 #include "engine/schedule/sweep_runner.h"
-#include "engine/store/finished.h"
 #include "engine/store/reader.h"
 
 namespace ed3r::app {
@@ -49,12 +48,12 @@ bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, bool 
   }
 }
 
-void RememberFinishedRun(const std::string& dir, std::int64_t missions, const std::string& table,
-                         const std::string& networks) {
+void RememberFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const store::StateOfFile& told,
+                         std::int64_t missions, const std::string& table, const std::string& networks) {
   const std::string program = ThisProgram();
   if (program.empty()) return;
   try {
-    store::RememberFinished(dir, {program, missions, table, networks});
+    store::RememberFinished(dir, told, plan.CanonicalText(), {program, missions, table, networks});
   } catch (const std::exception&) {  // it saves time, and the results are stored
   }
 }

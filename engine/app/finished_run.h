@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/store/finished.h"
 #include "engine/sweep/plan.h"
 
 namespace ed3r::app {
@@ -13,8 +14,9 @@ namespace ed3r::app {
 // directory is wrong, false: the run itself tells.
 bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, bool quiet);
 
-// After a run that was complete: `table` and `networks` as they were printed, "" where the command was quiet.
-void RememberFinishedRun(const std::string& dir, std::int64_t missions, const std::string& table,
-                         const std::string& networks);
+// After a run that was complete: `table` and `networks` as they were printed, "" where the command was quiet; `told`: the
+// state of the file from before the table was made.
+void RememberFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const store::StateOfFile& told,
+                         std::int64_t missions, const std::string& table, const std::string& networks);
 
 }  // namespace ed3r::app

@@ -61,6 +61,14 @@ std::string ChecksumOf(const FinishedRun& run) {
   return HashOf(bytes);
 }
 
+// Since the run was flown another process may have grown it, or put another file in its place.
+bool Holds(const std::string& file, const std::string& plan_text, const FinishedRun& run) {
+  Connection database(file, Connection::Access::kReadOnly);
+  return ReadRecipe(database).plan_text == plan_text &&
+         database.Int("SELECT count(*) FROM missions") == run.missions &&
+         database.Int("SELECT count(*) FROM failures") == 0;
+}
+
 void Write(const std::string& file, const FinishedRun& run) {
   const std::int64_t counter = ChangeCounter(file) + 1;
   timespec now = {};
@@ -85,11 +93,21 @@ void Write(const std::string& file, const FinishedRun& run) {
 
 }  // namespace
 
-void RememberFinished(const std::string& dir, const FinishedRun& run) {
+StateOfFile LookAtFile(const std::string& dir) {
+  const std::string file = ResultsFileOf(dir);
+  struct stat found = {};
+  if (stat(file.c_str(), &found) != 0) return {};
+  return {static_cast<std::int64_t>(found.st_dev), static_cast<std::int64_t>(found.st_ino), found.st_size,
+          ChangeCounter(file)};
+}
+
+void RememberFinished(const std::string& dir, const StateOfFile& told, const std::string& plan_text,
+                      const FinishedRun& run) {
   const std::string file = ResultsFileOf(dir);
   if (IsSharedFileSystem(PlaceOf(dir))) return;
   const DirectoryLock::Attempt alone = DirectoryLock::TryLock(PlaceOf(dir));
-  if (alone.lock && !IsBeingWritten(file)) Write(file, run);
+  if (alone.lock && !IsBeingWritten(file) && LookAtFile(dir) == told && Holds(file, plan_text, run))
+    Write(file, run);
 }
 
 std::optional<FinishedRun> RecallFinished(const std::string& dir, const std::string& made_by) {

@@ -18,8 +18,17 @@ struct FinishedRun {
   std::string networks;  // and the networks
 };
 
-// Does nothing where another process is at the file, or several machines may be.
-void RememberFinished(const std::string& dir, const FinishedRun& run);
+// Which state of which file something was told from. -1 throughout where it cannot be seen.
+struct StateOfFile {
+  std::int64_t device = -1, inode = -1, bytes = -1, changes = -1;
+  bool operator==(const StateOfFile&) const = default;
+};
+StateOfFile LookAtFile(const std::string& dir);
+
+// Does nothing where the file has left the state that was told from, is of another plan or holds other missions than the plan
+// and the run say, where another process is at it, or several machines may be.
+void RememberFinished(const std::string& dir, const StateOfFile& told, const std::string& plan_text,
+                      const FinishedRun& run);
 
 // Nothing where the file was touched, made by another program, or never remembered.
 std::optional<FinishedRun> RecallFinished(const std::string& dir, const std::string& made_by);

@@ -34,7 +34,10 @@ class JoinedMissions::Source {
         moment_(database_, Transaction::Kind::kRead),
         cursor_(database_, reader.Layout(), "", Steps::kLoad) {
     database_.Execute(fmt::format("PRAGMA cache_size = -{}", kCacheKib));
-    database_.Int("SELECT count(*) FROM sqlite_schema");  // the moment begins with the first look
+    // The moment begins with the first look. Keys are the reader's while the plan is.
+    if (database_.Text("SELECT value FROM recipe WHERE key = 'plan'") != reader.StoredRecipe().plan_text)
+      throw UserError(
+          fmt::format("{}: its plan has grown meanwhile; give the same command again", reader.dir()));
   }
 
   // For the reading thread.

@@ -15,6 +15,7 @@
 #include "engine/store/digest.h"
 #include "engine/store/growth.h"
 #include "engine/store/joined_missions.h"
+#include "engine/store/part_of_run.h"
 #include "engine/store/reader.h"
 #include "engine/store/records.h"
 #include "engine/store/schema.h"
@@ -167,20 +168,32 @@ bool SameStore(const std::string& a, const std::string& b) {
          std::filesystem::equivalent(one, other);
 }
 
-void AddAll(Target& target, const std::vector<std::string>& dirs) {
-  for (std::size_t begin = 0; begin < dirs.size(); begin += kReadAtOnce) {
-    std::vector<std::unique_ptr<ResultReader>> sources;
-    for (std::size_t i = begin; i < std::min(begin + kReadAtOnce, dirs.size()); ++i)
-      sources.push_back(std::make_unique<ResultReader>(dirs[i]));
-    target.Add(sources);
-  }
-}
-
 struct ToMerge {
   Recipe recipe;
   RunLayout layout;
   std::vector<std::vector<std::string>> by_plan;
 };
+
+// Since they were looked at one may have grown, or another run have taken its place.
+void CheckAsBefore(const ToMerge& all, const std::vector<std::unique_ptr<ResultReader>>& sources) {
+  for (const auto& source : sources) {
+    const Recipe& recipe = source->StoredRecipe();
+    if (recipe.plan_text != sources.front()->StoredRecipe().plan_text ||
+        !FindPlan(all.recipe, all.layout, *source).Counts())
+      throw UserError(
+          fmt::format("{}: has changed since the merge began; give the same command again", source->dir()));
+  }
+}
+
+void AddAll(Target& target, const ToMerge& all, const std::vector<std::string>& dirs) {
+  for (std::size_t begin = 0; begin < dirs.size(); begin += kReadAtOnce) {
+    std::vector<std::unique_ptr<ResultReader>> sources;
+    for (std::size_t i = begin; i < std::min(begin + kReadAtOnce, dirs.size()); ++i)
+      sources.push_back(std::make_unique<ResultReader>(dirs[i]));
+    CheckAsBefore(all, sources);
+    target.Add(sources);
+  }
+}
 
 // With tables: a killed merge leaves a file without.
 bool IsStore(const std::string& dir) {
@@ -213,9 +226,10 @@ MergeSummary MergeStores(const std::string& out, const std::vector<std::string>&
   try {
     Transaction transaction(file.database(), Transaction::Kind::kWrite);
     file.TakeUp(all.recipe, all.layout);
+    WriteFirstPage(file.database());
     if (file.grown().empty()) CheckWhole(file.database(), all.layout);  // else looked through before it grows
     Target target(file.database(), all.layout, out);
-    for (const std::vector<std::string>& of_plan : all.by_plan) AddAll(target, of_plan);
+    for (const std::vector<std::string>& of_plan : all.by_plan) AddAll(target, all, of_plan);
     MergeSummary summary = target.summary();
     summary.failed = file.database().Int("SELECT count(*) FROM failures");
     transaction.Commit();

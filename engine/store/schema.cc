@@ -231,6 +231,10 @@ void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& l
       fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kSchemaVersion));
 }
 
+void WriteFirstPage(Connection& database) {
+  database.Execute(fmt::format("PRAGMA application_id = {}", kApplicationId));
+}
+
 void ReplaceRecipe(Connection& database, const Recipe& recipe, const RunLayout& layout) {
   const std::vector<std::string> origins = ReadOrigins(database);
   database.Execute(

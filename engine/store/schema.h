@@ -60,6 +60,10 @@ void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& l
 // it (growth.h). Call it in a transaction.
 void ReplaceRecipe(Connection& database, const Recipe& recipe, const RunLayout& layout);
 
+// Changes nothing, but has the journal of this transaction hold the file's first page, and with it whose journal it is
+// (journals.h). Call it at the begin of each transaction that writes.
+void WriteFirstPage(Connection& database);
+
 // Adds the column that a file of format 2 may lack. Call it in a transaction.
 void AddFailureKind(Connection& database);
 

@@ -13,6 +13,7 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/utf8.h"
+#include "engine/store/journals.h"
 #include "engine/store/sqlite_errors.h"
 
 namespace ed3r::store {
@@ -103,6 +104,7 @@ void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_fi
 
 Connection::Connection(const std::string& file, Access access) : file_(file) {
   CheckFiles(file);
+  CheckJournals(file);
   sqlite3* database = nullptr;
   // An absolute path, because Debian's SQLite takes a name that begins with "file:" for a URI.
   const std::string path = std::filesystem::absolute(file).string();

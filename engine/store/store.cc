@@ -132,7 +132,10 @@ class SqliteStore final : public ResultStore {
   }
 
   void Commit() override {
-    InGroup([&] { group_->Commit(); });
+    InGroup([&] {
+      group_->Commit();
+      file_.CheckOwned();
+    });
     group_.reset();
   }
 
@@ -151,6 +154,7 @@ class SqliteStore final : public ResultStore {
   void BeginSession(const Recipe& recipe) {
     Connection& database = file_.database();
     Transaction transaction(database, Transaction::Kind::kWrite);
+    WriteFirstPage(database);
     // Drawn, not counted: sessions of many stores meet in a merge.
     session_ = database.Int("SELECT random() & 0x7fffffffffffffff");
     Statement begin(database, "INSERT INTO sessions VALUES (?, ?, ?, ?, NULL)");
@@ -182,6 +186,11 @@ class SqliteStore final : public ResultStore {
     waiting_.reset();
   }
 
+  void BeginGroup() {
+    group_.emplace(file_.database(), Transaction::Kind::kWrite);
+    WriteFirstPage(file_.database());
+  }
+
   // Runs `write` inside the open group. A write that fails may have got half-way, so the whole group goes
   // and the store is closed to further writes: no later commit can keep half a mission.
   template <class Write>
@@ -189,7 +198,7 @@ class SqliteStore final : public ResultStore {
     ED3R_CHECK(!broken_, "a write to this store failed before");
     try {
       file_.CheckOwned();
-      if (!group_) group_.emplace(file_.database(), Transaction::Kind::kWrite);
+      if (!group_) BeginGroup();
       write();
     } catch (...) {
       broken_ = true;

@@ -1,6 +1,7 @@
 #include "engine/store/store_file.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <system_error>
@@ -9,6 +10,7 @@
 #include "engine/core/check.h"
 #include "engine/store/file_system.h"
 #include "engine/store/growth.h"
+#include "engine/store/journals.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
 #include "engine/store/sqlite_errors.h"
@@ -25,6 +27,13 @@ constexpr int kCacheKib = 64 * 1024;
 constexpr int kSharedBusyTimeout_ms = 600 * 1000;
 
 std::string FileIn(const std::string& dir) { return (fs::path(dir) / kResultsFile).string(); }
+
+// Device and inode; zeros where nothing is there.
+std::pair<std::uint64_t, std::uint64_t> IdentityOf(const std::string& file) {
+  struct stat found = {};
+  if (stat(file.c_str(), &found) != 0) return {};
+  return {found.st_dev, found.st_ino};
+}
 
 // The first directory of the path that had to be made; "" where all was there.
 std::string MakeDirectory(const std::string& dir) {
@@ -140,11 +149,17 @@ void StoreFile::CheckOwned() const {
   if (owner_ && owner_->Lost())
     throw StoreError(
         fmt::format("{}: another ed3r has taken this directory over; what is stored is kept", dir_));
+  if (IdentityOf(FileIn(dir_)) != identity_)
+    throw StoreError(fmt::format(
+        "{}: was taken away, or another file put in its place, while it was written to: what this "
+        "run has stored is not in it; the same command continues with what is there",
+        FileIn(dir_)));
 }
 
 void StoreFile::Connect() {
   database_.reset();  // the one before, of the other journal
   database_ = std::make_unique<Connection>(FileIn(dir_), Connection::Access::kCreate);
+  identity_ = IdentityOf(FileIn(dir_));
   if (!rollback_journal_) return;
   database_->SetBusyTimeout(kSharedBusyTimeout_ms);
   // A file that was left in WAL mode is opened without shared memory in this mode.
@@ -153,6 +168,9 @@ void StoreFile::Connect() {
 
 void StoreFile::SetJournal(bool empty) {
   if (empty) database_->Execute(fmt::format("PRAGMA page_size = {}", kPageBytes));
+  // A log that a killed writer has left goes on with the mark of that session.
+  if (database_->Text("PRAGMA journal_mode") != "wal")
+    database_->Execute(fmt::format("PRAGMA schema_version = {}", DrawMark()));
   if (rollback_journal_) {
     // The lock is given back with the next commit, so that readers get their turn between commits.
     database_->Execute(

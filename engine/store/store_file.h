@@ -1,8 +1,10 @@
 // The file of a run directory, open for writing: lock, checks, journal. Shared by the store and the merge.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/store/damage.h"
@@ -48,7 +50,8 @@ class StoreFile {
   // What was taken out so that it may grow.
   const std::vector<DamagedMission>& repaired() const { return repaired_; }
 
-  // StoreError once another writer has taken the directory over, which it does only when this one seemed dead.
+  // StoreError once another writer has taken the directory over, which it does only when this one seemed dead, or once another
+  // file lies in this one's place.
   void CheckOwned() const;
 
   // Takes away what this object created: the file, and the directories that are empty then. For what is refused after all.
@@ -67,6 +70,7 @@ class StoreFile {
   std::string grown_;
   std::vector<DamagedMission> repaired_;
   bool rollback_journal_ = false;
+  std::pair<std::uint64_t, std::uint64_t> identity_;  // device and inode
   // One of the two is held; both outlive the connection.
   std::unique_ptr<DirectoryLock> lock_;
   std::unique_ptr<OwnerFile> owner_;

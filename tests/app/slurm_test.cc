@@ -142,6 +142,34 @@ wait $task
   EXPECT_TRUE(std::filesystem::is_empty(local));
 }
 
+// A node stops answering, the task is flown by another one, and then the first brings its part home.
+TEST_F(PiecesTest, ALateCopyOfATaskTakesNothingAway) {
+  const std::string sweep = Write("name: twice\nmissions: 8\nset: {strategy: rbs, " + kWorld + "}");
+  const fs::path local = scratch_ / "local";
+  fs::create_directory(local);
+  ExpectDone(Ed3r(fmt::format("slurm {} --shards 1 --scratch {} --out {}", sweep, local.string(), Run())));
+  const std::string store = Run() + "/shards/online/00001", part = (scratch_ / "part").string();
+  ExpectDone(Ed3r(fmt::format("run {} --shard 1/2 --quiet --out {}", sweep, part)));
+  const std::string late = (scratch_ / "late.sh").string(), script = (scratch_ / "task.sh").string();
+  // Flies a half into the folder after --out, while the other copy brings all of it home.
+  std::ofstream(late) << fmt::format(R"(#!/bin/bash
+[ "$1" = run ] || exec {0} "$@"
+while [ "$1" != --out ]; do shift; done
+{0} run {1} --stage online --shard 1/1 --quiet --out {2}
+cp {3}/results.sqlite "$2"
+exit 75
+)",
+                                     ED3R_BINARY, sweep, store, part);
+  std::ofstream(script) << fmt::format(
+      "chmod +x {0}; cd {1}/slurm; sed -i 's#^ed3r=.*#ed3r={0}#' common.sh; SLURM_ARRAY_TASK_ID=1 bash "
+      "1-online.sbatch\n",
+      late, Run());
+  EXPECT_EQ(std::system(("bash " + script + " >" + (scratch_ / "log").string() + " 2>&1").c_str()) >> 8, 75)
+      << ReadAll(scratch_ / "log");
+  EXPECT_EQ(Ed3r("verify " + store).out, store + ": 8 missions whole\n") << ReadAll(scratch_ / "log");
+  EXPECT_TRUE(fs::is_empty(local));
+}
+
 TEST_F(PiecesTest, APrecisionGoesInRounds) {
   const std::string sweep = Write(
       "name: rounds\nmissions: 60\nprecision: {metric: total_energy_kj, half_width: 2, every: 20}\n"

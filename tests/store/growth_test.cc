@@ -2,6 +2,7 @@
 #include "engine/store/growth.h"
 
 #include "engine/config/parameters.h"
+#include "engine/store/joined_missions.h"
 #include "engine/store/merge.h"
 #include "tests/store/store_fixture.h"
 
@@ -354,6 +355,14 @@ TEST_F(GrowthTest, AWarmUpThatNetworksHaveLearnedFromStaysAsItIs) {
 TEST_F(GrowthTest, AWarmUpThatNobodyHasLearnedFromMayGrow) {
   Fly(Dir(), Learning({"warmup"}, 10, 8));
   EXPECT_EQ(Open(Dir(), Learning({"warmup"}, 12, 8))->Grown(), "stage warmup: 12 missions per arm for 10");
+}
+
+TEST_F(GrowthTest, WhatGrowsWhileItIsMergedIsRefused) {
+  Fly(Dir(), Masses({1, 3}, 10));
+  std::vector<std::unique_ptr<ResultReader>> readers;
+  readers.push_back(std::make_unique<ResultReader>(Dir()));
+  Fly(Dir(), Masses({1, 2, 3}, 10));
+  EXPECT_TRUE(Contains(UserErrorOf([&] { JoinedMissions(readers, 1); }), "its plan has grown meanwhile"));
 }
 
 TEST_F(GrowthTest, ShardsGrowOneByOneAndMergeIntoTheRunOfBefore) {

@@ -112,7 +112,7 @@ TEST(FinishedTest, IsBelievedWhileTheFileIsUntouched) {
   WriteStore(temp / "run", AllMissions(TestLayout()));
   const std::string digest = DigestOfDir(temp / "run");
   EXPECT_FALSE(RecallFinished(temp / "run", "this"));
-  RememberFinished(temp / "run", {"this", 100, "a table\n", "networks\n"});
+  Remember(temp / "run", {"this", 100, "a table\n", "networks\n"});
   const auto finished = RecallFinished(temp / "run", "this");
   ASSERT_TRUE(finished);
   EXPECT_EQ(finished->missions, 100);
@@ -123,7 +123,7 @@ TEST(FinishedTest, IsBelievedWhileTheFileIsUntouched) {
 
   fs::last_write_time(ResultsIn(temp / "run"), fs::file_time_type::clock::now());
   EXPECT_FALSE(RecallFinished(temp / "run", "this")) << "written to by whatever";
-  RememberFinished(temp / "run", {"this", 100, "", ""});
+  Remember(temp / "run", {"this", 100, "", ""});
   ASSERT_TRUE(RecallFinished(temp / "run", "this"));
   const auto time = fs::last_write_time(ResultsIn(temp / "run"));
   Connection(ResultsIn(temp / "run"), Connection::Access::kReadWrite)
@@ -137,7 +137,7 @@ TEST(FinishedTest, WhatWasPrintedIsChecked) {
   const TempDir temp;
   WriteStore(temp / "run", {{0, 0, 1}});
   const std::string file = ResultsIn(temp / "run"), table = "total 10.99 kJ in a table of its own\n";
-  RememberFinished(temp / "run", {"this", 100, table, "networks\n"});
+  Remember(temp / "run", {"this", 1, table, "networks\n"});
   ASSERT_TRUE(RecallFinished(temp / "run", "this"));
   const auto time = fs::last_write_time(file);
   std::string bytes;
@@ -156,10 +156,32 @@ TEST(FinishedTest, WhatWasPrintedIsChecked) {
   EXPECT_FALSE(RecallFinished(temp / "run", "this"));
 }
 
+// Between flying and remembering a table is printed, which may stand still for hours.
+TEST(FinishedTest, NotWhatAnotherProcessHasMadeOfTheRun) {
+  const TempDir temp;
+  const std::string run = temp / "run", plan = TestRecipe().plan_text;
+  WriteStore(run, {{0, 0, 1}});
+  const StateOfFile told = LookAtFile(run);
+  RememberFinished(run, told, plan + "x", {"this", 1, "", ""});
+  EXPECT_FALSE(RecallFinished(run, "this")) << "another plan";
+  RememberFinished(run, told, plan, {"this", 2, "", ""});
+  EXPECT_FALSE(RecallFinished(run, "this")) << "other missions";
+  WriteStore(run, {{0, 0, 2}});
+  RememberFinished(run, told, plan, {"this", 2, "", ""});
+  EXPECT_FALSE(RecallFinished(run, "this")) << "another state";
+  WriteStore(temp / "other", {{0, 0, 1}, {0, 0, 2}});
+  const StateOfFile of_both = LookAtFile(run);
+  fs::rename(ResultsIn(temp / "other"), ResultsIn(run));
+  RememberFinished(run, of_both, plan, {"this", 2, "", ""});
+  EXPECT_FALSE(RecallFinished(run, "this")) << "another file";
+  Remember(run, {"this", 2, "", ""});
+  EXPECT_TRUE(RecallFinished(run, "this"));
+}
+
 TEST(FinishedTest, NotWhileAnotherProcessWrites) {
   const TempDir temp;
   const auto store = ResultStore::Open(temp / "run", TestRecipe(), TestLayout());
-  RememberFinished(temp / "run", {"this", 0, "", ""});
+  Remember(temp / "run", {"this", 0, "", ""});
   EXPECT_FALSE(RecallFinished(temp / "run", "this"));
 }
 

@@ -14,6 +14,7 @@
 #include "engine/core/check.h"
 #include "engine/core/random.h"
 #include "engine/store/digest.h"
+#include "engine/store/finished.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
 #include "engine/store/store.h"
@@ -100,6 +101,10 @@ inline mission::MissionRecord TestRecord(const sweep::RunId& id) {
 inline std::string DigestOfDir(const std::string& dir) {
   ResultReader reader(dir);
   return DigestOf(reader);
+}
+
+inline void Remember(const std::string& dir, const FinishedRun& run) {
+  RememberFinished(dir, LookAtFile(dir), TestRecipe().plan_text, run);
 }
 
 // What the UserError says that `action` throws; a test failure when it throws none.

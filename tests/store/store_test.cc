@@ -240,11 +240,20 @@ TEST(StoreTest, ARunIsRememberedThroughALink) {
   std::filesystem::create_symlink(ResultsIn(temp / "run"), ResultsIn(temp / "link"));
   {
     const auto writing = OpenTest(temp / "run");
-    RememberFinished(temp / "link", {"me", 1, "table", ""});
+    Remember(temp / "link", {"me", 1, "table", ""});
     EXPECT_FALSE(RecallFinished(temp / "link", "me")) << "somebody is at the file";
   }
-  RememberFinished(temp / "link", {"me", 1, "table", ""});
+  Remember(temp / "link", {"me", 1, "table", ""});
   EXPECT_TRUE(RecallFinished(temp / "run", "me"));
+}
+
+TEST(StoreTest, AFileThatAnotherTookThePlaceOfIsNotWritten) {
+  const TempDir temp;
+  WriteStore(temp / "backup", {{0, 0, 0}});
+  const auto store = OpenTest(temp / "run");
+  store->Put({0, 0, 1}, TestRecord({0, 0, 1}), 0);
+  std::filesystem::rename(ResultsIn(temp / "backup"), ResultsIn(temp / "run"));
+  EXPECT_THROW(store->Commit(), StoreError);
 }
 
 // Forks a child that writes, and kills it when it says so. Returns once it is gone.

@@ -22,7 +22,7 @@ run={run_dir}                 # the merged run: 'ed3r status', 'ed3r report'
 shards=$run/shards            # one store per task
 cache={cache_dir}             # trained networks
 tasks={shards}                # that the flights of a stage are divided into, at most: change it only with all scripts
-scratch="{scratch}"           # a disk of the node's own to write on; the store is moved to the shared one at the end
+scratch="{scratch}"           # a disk of the node's own to write on; the store is merged into the shared one at the end
 # module load ...             # whatever the program needs on your site
 threads=${{SLURM_CPUS_PER_TASK:-1}}
 
@@ -62,15 +62,19 @@ fly() {{
   out=$store
   if [ -n "$scratch" ]; then
     out=$(mktemp -d "$scratch/ed3r-XXXXXX")
-    [ ! -e "$store/results.sqlite" ] || cp "$store/results.sqlite" "$out/"
+    # By merge and not by cp: what a killed task has stored may still lie in the journal beside its file.
+    if [ -s "$store/results.sqlite" ] && ! "$ed3r" merge "$out" "$store" >&2; then
+      rm -rf "$out"
+      finish 1
+    fi
   fi
   task run "${{sweep[@]}}" --stage "$1" --shard "$2/$3" --from "$run" --out "$out" --cache "$cache" \
     --threads "$threads" --quiet || status=$?
   if [ -n "$scratch" ] && [ -s "$out/results.sqlite" ]; then
-    # By merge and not by cp: what a killed task has stored may still lie in the journal beside its file. The store appears
-    # whole or not at all; what cannot be brought home stays where it is.
-    if "$ed3r" merge "$out/whole" "$out" >&2 && mkdir -p "$store" && cp "$out/whole/results.sqlite" "$store/.arriving"; then
-      mv -f "$store/.arriving" "$store/results.sqlite" && rm -rf "$out"
+    # In one transaction, and to what another copy of this task may have brought home meanwhile. What cannot be brought home
+    # stays where it is.
+    if "$ed3r" merge "$store" "$out" >&2; then
+      rm -rf "$out"
     else
       echo "the results of this task could not be moved to $store; they are in $out on $(hostname)" >&2
       [ "$status" -ne 0 ] || status=1

@@ -1,0 +1,168 @@
+#include "engine/store/journals.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <optional>
+#include <random>
+#include <thread>
+#include <utility>
+
+#include "engine/core/check.h"
+
+namespace ed3r::store {
+namespace {
+
+constexpr std::uint32_t kMostSchemaChanges = 4096;  // of one session; they are a few dozen
+constexpr int kLooks = 10;
+constexpr std::chrono::milliseconds kBetweenLooks{20};
+
+// Numbers are big-endian; places are those of SQLite's file format.
+class BinaryFile {
+ public:
+  explicit BinaryFile(const std::string& name) : descriptor_(open(name.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  ~BinaryFile() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  BinaryFile(const BinaryFile&) = delete;
+  BinaryFile& operator=(const BinaryFile&) = delete;
+
+  bool there() const { return descriptor_ >= 0; }
+  std::int64_t Size() const { return lseek(descriptor_, 0, SEEK_END); }
+  bool Read(std::int64_t at, void* bytes, std::size_t size) const {
+    return pread(descriptor_, bytes, size, at) == static_cast<ssize_t>(size);
+  }
+  std::optional<std::uint32_t> Number(std::int64_t at) const {
+    std::array<unsigned char, 4> bytes = {};
+    if (!Read(at, bytes.data(), bytes.size())) return std::nullopt;
+    std::uint32_t number = 0;
+    for (const unsigned char byte : bytes) number = number << 8 | byte;
+    return number;
+  }
+
+ private:
+  int descriptor_;
+};
+
+// What the first page of a file, or a copy of it in a journal, tells of its state.
+struct State {
+  std::uint32_t changes = 0, mark = 0;
+  bool operator==(const State&) const = default;
+};
+
+std::optional<State> StateAt(const BinaryFile& file, std::int64_t page) {
+  const auto changes = file.Number(page + 24), mark = file.Number(page + 40);
+  if (!changes || !mark) return std::nullopt;
+  return State{*changes, *mark};
+}
+
+// The states of the first page in the commits of a write-ahead log; none where it holds none.
+std::optional<std::pair<State, State>> StatesOfLog(const std::string& name) {
+  constexpr std::int64_t kHeaderBytes = 32, kFrameHeaderBytes = 24;
+  const BinaryFile log(name);
+  std::array<char, 8> salt = {}, salt_of_frame = {};
+  const auto page_bytes = log.there() ? log.Number(8) : std::nullopt;
+  if (!page_bytes || *page_bytes < 512 || !log.Read(16, salt.data(), salt.size())) return std::nullopt;
+  std::optional<State> first, last, committed;
+  for (std::int64_t at = kHeaderBytes;; at += kFrameHeaderBytes + *page_bytes) {
+    const auto page = log.Number(at), pages_after_commit = log.Number(at + 4);
+    if (!page || !pages_after_commit || !log.Read(at + 8, salt_of_frame.data(), salt_of_frame.size()) ||
+        salt != salt_of_frame)
+      break;  // the rest is of a round before
+    if (*page == 1) last = StateAt(log, at + kFrameHeaderBytes);
+    if (!first) first = last;
+    if (*pages_after_commit != 0) committed = last;
+  }
+  if (!first || !committed) return std::nullopt;
+  return std::pair{*first, *committed};
+}
+
+struct JournalledPage {
+  State state;
+  bool alone = false;  // nothing else was about to change
+};
+
+// The first page as a rollback journal would restore it; none where it would restore nothing, or not that page.
+std::optional<JournalledPage> FirstPageOfJournal(const std::string& name) {
+  constexpr std::array<unsigned char, 8> kMagic = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
+  const BinaryFile journal(name);
+  if (!journal.there()) return std::nullopt;
+  const std::int64_t size = journal.Size();
+  std::uint32_t records_before = 0;
+  for (std::int64_t segment = 0;;) {
+    std::array<unsigned char, 8> magic = {};
+    const auto records = journal.Number(segment + 8), sector = journal.Number(segment + 20),
+               page_bytes = journal.Number(segment + 24);
+    if (!journal.Read(segment, magic.data(), magic.size()) || magic != kMagic || !records || !sector ||
+        !page_bytes || *sector < 32 || *page_bytes < 512)
+      return std::nullopt;
+    const std::int64_t record_bytes = 4 + std::int64_t{*page_bytes} + 4;
+    std::int64_t at = segment + *sector;
+    const std::int64_t in_file = (size - at) / record_bytes;
+    const std::int64_t count = *records == 0xffffffff ? in_file : std::min<std::int64_t>(*records, in_file);
+    for (std::int64_t i = 0; i < count; ++i, at += record_bytes)
+      if (journal.Number(at) == 1u) {
+        const auto state = StateAt(journal, at + 4);
+        if (!state) return std::nullopt;
+        return JournalledPage{*state, records_before == 0 && count == 1};
+      }
+    if (count <= 0) return std::nullopt;
+    records_before += static_cast<std::uint32_t>(count);
+    segment = (at + *sector - 1) / *sector * *sector;  // the next one begins a sector
+  }
+}
+
+bool SameMark(std::uint32_t before, std::uint32_t after) { return after - before < kMostSchemaChanges; }
+
+// A log is written back from time to time: the file is at a state from that before its first commit to that after its last.
+bool IsOf(const State& file, const std::pair<State, State>& log) {
+  const auto& [first, last] = log;
+  return SameMark(file.mark, last.mark) &&
+         file.changes - (first.changes - 1) <= last.changes - (first.changes - 1);
+}
+
+// The file is as it was before the commit that would be undone, or as it would have been after it. Giving the file a new mark
+// is a commit of its own.
+bool IsOf(const State& file, const JournalledPage& before) {
+  return file.changes - before.state.changes <= 1 && (before.alone || SameMark(before.state.mark, file.mark));
+}
+
+// "-wal" or "-journal" where that is another file's.
+std::string StrangeJournal(const std::string& name) {
+  const BinaryFile file(name);
+  if (!file.there()) return "";  // SQLite takes the journals of nothing away
+  const auto state = StateAt(file, 0);
+  const auto log = StatesOfLog(name + "-wal");
+  if (log && (!state || !IsOf(*state, *log))) return "-wal";
+  const auto journal = FirstPageOfJournal(name + "-journal");
+  if (journal && (!state || !IsOf(*state, *journal))) return "-journal";
+  return "";
+}
+
+}  // namespace
+
+std::int64_t DrawMark() {
+  std::random_device random;
+  return std::uniform_int_distribution<std::int64_t>(1, std::int64_t{1} << 30)(random);
+}
+
+void CheckJournals(const std::string& file) {
+  std::string strange = StrangeJournal(file);
+  for (int look = 1; !strange.empty() && look < kLooks; ++look) {
+    std::this_thread::sleep_for(kBetweenLooks);
+    strange = StrangeJournal(file);
+  }
+  if (!strange.empty())
+    throw UserError(fmt::format(
+        "{0}: {0}{1} is of another results file than this one, which was put in its place since; SQLite "
+        "would "
+        "write over this one what is in it: take {0}{1} out of the folder to read this file as it is, or "
+        "put the file back that it is of",
+        file, strange));
+}
+
+}  // namespace ed3r::store

@@ -1,0 +1,89 @@
+// What lies beside a results file under the name of its journal is its own, or it is not touched.
+#include "engine/store/journals.h"
+
+#include <algorithm>
+#include <set>
+
+#include "tests/store/store_fixture.h"
+
+namespace ed3r::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+const sweep::RunId kNotFlown{0, 0, 9};
+const std::vector<sweep::RunId> kFew = {{0, 0, 0}, {0, 0, 1}}, kMore = {{0, 0, 2}, {0, 0, 3}, {2, 1, 5}};
+
+// The files of `from` as a kill would leave them at this moment.
+void CopyAsKilled(const std::string& from, const std::string& to) {
+  fs::create_directories(to);
+  for (const char* suffix : {"", "-wal", "-journal"})
+    if (fs::exists(ResultsIn(from) + suffix))
+      fs::copy_file(ResultsIn(from) + suffix, ResultsIn(to) + suffix, fs::copy_options::overwrite_existing);
+}
+
+// `killed` reads and goes on; with `other`'s file in its place it is refused, and that file stays as it is.
+void ExpectBound(const std::string& killed, const std::string& other, const std::string& suffix,
+                 const std::string& digest_of_killed) {
+  const TempDir temp;
+  CopyAsKilled(killed, temp / "own");
+  ASSERT_TRUE(fs::exists(ResultsIn(temp / "own") + suffix));
+  EXPECT_EQ(DigestOfDir(temp / "own"), digest_of_killed);
+  CopyAsKilled(killed, temp / "mixed");
+  fs::copy_file(ResultsIn(other), ResultsIn(temp / "mixed"), fs::copy_options::overwrite_existing);
+  const std::string digest = DigestOfDir(other);
+  const auto refused = [&](const auto& action) {
+    EXPECT_TRUE(Contains(UserErrorOf(action), ResultsIn(temp / "mixed") + suffix + " is of another results"));
+  };
+  refused([&] { ResultReader(temp / "mixed").CountMissions(); });
+  refused([&] { WriteStore(temp / "mixed", {kNotFlown}); });
+  fs::remove(ResultsIn(temp / "mixed") + suffix);
+  EXPECT_EQ(DigestOfDir(temp / "mixed"), digest);
+  WriteStore(temp / "own", {kNotFlown});  // what was killed goes on
+  EXPECT_TRUE(ResultReader(temp / "own").FindDamage().empty());
+}
+
+TEST(JournalsTest, AWriteAheadLogIsOfItsFile) {
+  const TempDir temp;
+  WriteStore(temp / "run", kFew);
+  CopyAsKilled(temp / "run", temp / "before");
+  WriteStore(temp / "other", kMore);
+  WriteStore(temp / "reference", kFew);
+  WriteStore(temp / "reference", kMore);
+  const auto store = ResultStore::Open(temp / "run", TestRecipe(), TestLayout());
+  for (const sweep::RunId& id : kMore) store->Put(id, TestRecord(id), 0.25);
+  store->Commit();
+  for (const char* other : {"before", "other", "reference"})
+    ExpectBound(temp / "run", temp / other, "-wal", DigestOfDir(temp / "reference"));
+}
+
+TEST(JournalsTest, ARollbackJournalIsOfItsFile) {
+  const TempDir temp;
+  WriteStore(temp / "before", kFew);
+  std::vector<sweep::RunId> many = AllMissions(TestLayout());
+  std::erase(many, kNotFlown);
+  WriteStore(temp / "other", many);
+  std::erase_if(many, [](const sweep::RunId& id) { return std::count(kFew.begin(), kFew.end(), id) > 0; });
+  CopyAsKilled(temp / "before", temp / "run");
+  WriteStore(temp / "run", many);
+  const std::string digest = DigestOfDir(temp / "run");
+  {
+    Connection database(ResultsIn(temp / "run"), Connection::Access::kReadWrite);
+    database.Execute("PRAGMA cache_size = 2; BEGIN IMMEDIATE");
+    WriteFirstPage(database);
+    database.Execute("UPDATE timesteps SET scs = 0");
+    CopyAsKilled(temp / "run", temp / "killed");  // pages that found no room are in the file
+    database.Execute("ROLLBACK");
+  }
+  for (const char* other : {"before", "other"})
+    ExpectBound(temp / "killed", temp / other, "-journal", digest);
+}
+
+TEST(JournalsTest, EachSessionHasItsMark) {
+  std::set<std::int64_t> marks;
+  for (int i = 0; i < 100; ++i) marks.insert(DrawMark());
+  EXPECT_GT(marks.size(), 90u);
+}
+
+}  // namespace
+}  // namespace ed3r::store
