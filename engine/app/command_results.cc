@@ -39,9 +39,6 @@ std::shared_ptr<DirOptions> AddDirOptions(CommandLine& parser) {
   return options;
 }
 
-// About a second's work. Beyond it a look at the status must not take long.
-constexpr std::uintmax_t kCheckedBytes = 50'000'000;
-
 struct Check {
   bool done = false;
   bool possible = true;  // false: without checksums
@@ -50,8 +47,7 @@ struct Check {
 
 Check CheckOf(store::ResultReader& reader) {
   if (!reader.Tables().checked()) return {false, false, {}};
-  if (std::filesystem::file_size(std::filesystem::path(reader.dir()) / store::kResultsFile) > kCheckedBytes)
-    return {};
+  if (!reader.IsQuicklyCompared()) return {};
   return {true, true, reader.FindDamage()};
 }
 
@@ -85,7 +81,7 @@ void PrintStatus(store::ResultReader& reader, const Check& check) {
     fmt::print("{}\n", store::kNothingToCompare);
   else if (!check.done)
     fmt::print("not compared with its checksums, as it is larger than {} MB: 'ed3r verify {}' does\n",
-               kCheckedBytes / 1'000'000, reader.dir());
+               store::kQuicklyComparedBytes / 1'000'000, reader.dir());
   if (!check.damage.empty())
     fmt::print(
         "damaged: {}, the first {}: {}; 'ed3r verify {}' names all, 'ed3r run SWEEP --repair' flies them "

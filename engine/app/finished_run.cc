@@ -23,8 +23,7 @@ std::string ThisProgram() {
 }
 
 // By what the files contain: worlds and detectors need not be loaded for that.
-bool SameRecipe(const sweep::SweepPlan& plan, const std::string& dir) {
-  store::ResultReader reader(dir);
+bool SameRecipe(const sweep::SweepPlan& plan, store::ResultReader& reader) {
   const store::Recipe& recipe = reader.StoredRecipe();
   if (recipe.plan_text != plan.CanonicalText() || store::CodeDifference(recipe.code, schedule::CodeOf(plan)))
     return false;
@@ -38,10 +37,21 @@ bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, bool 
   try {
     const std::string program = ThisProgram();
     const auto finished = program.empty() ? std::nullopt : store::RecallFinished(dir, program);
-    if (!finished || (!quiet && finished->table.empty()) || !SameRecipe(plan, dir)) return false;
+    if (!finished || (!quiet && finished->table.empty())) return false;
+    store::ResultReader reader(dir);
+    if (!SameRecipe(plan, reader)) return false;
+    // A bad disk leaves the times as they are.
+    const bool compared = reader.IsQuicklyCompared();
+    if (compared && !reader.FindDamage().empty()) return false;
     if (!quiet)
       fmt::print("{}\n{}: {} stored ({} before)\n{}", finished->table, dir,
                  Counted(finished->missions, "mission"), finished->missions, finished->networks);
+    FlushOutput();
+    if (!compared)
+      Tell(
+          "note: {}: complete since it was flown, and not compared with its checksums again; 'ed3r verify "
+          "{}' does",
+          dir, dir);
     return true;
   } catch (const std::exception&) {
     return false;

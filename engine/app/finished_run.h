@@ -10,8 +10,9 @@
 namespace ed3r::app {
 
 // Where `dir` holds all of this plan, flown by this code with the same files, and has not been touched since this very
-// program found it complete: prints what the command printed then, and returns true. Otherwise, also where anything about the
-// directory is wrong, false: the run itself tells.
+// program found it complete: prints what the command printed then, and returns true. A run that is quickly compared with its
+// checksums is, of another a note tells that it was not. Otherwise, also where anything about the directory is wrong, false:
+// the run itself tells.
 bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, bool quiet);
 
 // After a run that was complete: `table` and `networks` as they were printed, "" where the command was quiet; `told`: the

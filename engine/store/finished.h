@@ -2,7 +2,7 @@
 //
 // It is believed only by the program that wrote it and while the file is untouched: SQLite's change counter and the time of
 // the last write must be what they were, nothing may have changed the file or its times since, and what was printed must match
-// its checksum. Damage of missions below the file system is found by 'ed3r verify' and by whatever reads them.
+// its checksum. Damage of missions below the file system is found by whatever compares them.
 #pragma once
 
 #include <cstdint>

@@ -50,6 +50,10 @@ ResultReader::ResultReader(const std::string& dir) : dir_(dir), database_(OpenTo
   recipe_ = ReadRecipe(database_);
 }
 
+bool ResultReader::IsQuicklyCompared() const {
+  return std::filesystem::file_size(database_.file()) <= kQuicklyComparedBytes;
+}
+
 void ResultReader::CheckPlan() {
   Statement plan(database_, "SELECT value FROM recipe WHERE key = 'plan'");
   if (!plan.Step() || plan.Text(0) != recipe_.plan_text)

@@ -58,6 +58,8 @@ class NoResultsYet : public UserError {
   using UserError::UserError;
 };
 
+inline constexpr std::uintmax_t kQuicklyComparedBytes = 50'000'000;
+
 class ResultReader {
  public:
   explicit ResultReader(const std::string& dir);
@@ -118,6 +120,8 @@ class ResultReader {
 
   // Every mission that does not match its checksums or is not in the plan. Reads everything.
   std::vector<DamagedMission> FindDamage();
+  // Whether that takes about a second at most: a look at a run must not take long.
+  bool IsQuicklyCompared() const;
 
  private:
   // `run`: whose missions alone are asked for.

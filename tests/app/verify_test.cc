@@ -31,6 +31,18 @@ void Sql(const fs::path& dir, const std::string& sql) {
   ASSERT_EQ(std::system(line.c_str()), 0) << line;
 }
 
+// One bit of a mission's record turns, and the file's times stay, as a bad disk leaves it.
+void Rot(const fs::path& dir) {
+  const std::string line = fmt::format(
+      "/usr/bin/python3 -c \"import os, sqlite3; f = '{}'; was = os.stat(f); d = sqlite3.connect(f); c = "
+      "d.execute('SELECT steps_checksum FROM missions').fetchone()[0]; d.close(); b = open(f, 'rb').read(); "
+      "i "
+      "= b.find(c.encode()) + 200; o = open(f, 'r+b'); o.seek(i); o.write(bytes([b[i] ^ 16])); o.close(); "
+      "os.utime(f, ns=(was.st_atime_ns, was.st_mtime_ns))\"",
+      (dir / "results.sqlite").string());
+  ASSERT_EQ(std::system(line.c_str()), 0) << line;
+}
+
 class VerifyTest : public ::testing::Test {
  protected:
   VerifyTest() {
@@ -118,6 +130,15 @@ TEST_F(VerifyTest, EveryCommandRefusesADamagedMissionAndARepairFliesItAgain) {
   EXPECT_TRUE(Contains(repaired.out, "repaired: stage online, arm rbs, mission 2: "));
   EXPECT_EQ(Ed3r("digest " + dir).out, digest_);
   EXPECT_EQ(Ed3r("verify " + dir).status, 0);
+}
+
+TEST_F(VerifyTest, ARunThatWasFoundCompleteIsComparedAgain) {
+  ASSERT_EQ(Ed3r(FlyRbs(Run())).status, 0);  // remembered as complete
+  Rot(Run());
+  const CommandResult again = Ed3r(FlyRbs(Run()));
+  EXPECT_EQ(again.status, 2) << again.out;
+  EXPECT_TRUE(Contains(again.err, "its record does not match its checksum")) << again.err;
+  EXPECT_EQ(Ed3r("verify " + Run().string()).status, 1);
 }
 
 // Shards of the plan before it grew, beside a run that has the grown one and lacks missions of it.
