@@ -1,5 +1,7 @@
-// GDAL for the time of one object: it prints nothing, opens files of the disk alone, never asks a network, and knows the
-// two formats that are read here. Threads: an object belongs to the thread that made it.
+// GDAL for the time of one object: it prints nothing, opens files of the disk alone, never asks a network, knows the two
+// formats that are read here, and reads them alike whatever the environment or its configuration file says. What it
+// complains of is kept: it goes on after most of it, without a scale, a mask or a coordinate system.
+// Threads: an object belongs to the thread that made it.
 #pragma once
 
 #include <string>
@@ -13,8 +15,19 @@ class QuietGdal {
   QuietGdal(const QuietGdal&) = delete;
   QuietGdal& operator=(const QuietGdal&) = delete;
 
+  // The first warning or error since this object was made or Forgive was called that may change a number, in one line;
+  // "" where there was none.
+  const std::string& Complaint() const { return complaint_; }
+  void Forgive() { complaint_.clear(); }
+
   // In one line.
   static std::string LastError();
+
+ private:
+  void Hear(const std::string& message);
+
+  std::string complaint_;
+  char** options_before_;
 };
 
 }  // namespace ed3r::world

@@ -5,50 +5,19 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <limits>
-#include <string_view>
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/world/quiet_gdal.h"
+#include "engine/world/raster_neighbours.h"
+#include "engine/world/text_grid.h"
 
 namespace ed3r::world {
 namespace {
-
-// GDAL looks for georeferences and masks in files that are called alike; opening a pipe among them would wait.
-std::string WaitingSibling(const std::filesystem::path& file) {
-  const std::string stem = file.stem().string();
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(file.parent_path(), error)) {
-    const std::string name = entry.path().filename().string();
-    const auto kind = entry.status(error).type();
-    using Kind = std::filesystem::file_type;
-    if (name.starts_with(stem) && (kind == Kind::fifo || kind == Kind::socket || kind == Kind::character))
-      return name;
-  }
-  return "";
-}
-
-bool IsGridNumber(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc() && end == word.data() + word.size() && !std::isinf(value);
-}
-
-bool IsHeaderName(std::string_view word) {
-  constexpr std::array<std::string_view, 10> kNames = {"ncols",     "nrows",       "xllcorner", "yllcorner",
-                                                       "xllcenter", "yllcenter",   "cellsize",  "dx",
-                                                       "dy",        "nodata_value"};
-  std::string lower(word);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  return std::find(kNames.begin(), kNames.end(), lower) != kNames.end();
-}
 
 // What programs write where nothing is known. None is a height of ground on which trees burn.
 bool IsUsualMark(double value, GDALDataType type) {
@@ -79,13 +48,13 @@ RasterFile::RasterFile(const GridTerrainSpec& spec) : spec_(spec), gdal_(std::ma
   // The absolute path: GDAL takes names with certain beginnings for other things than files.
   const std::filesystem::path file = std::filesystem::canonical(spec.file);
   file_ = file.string();
-  if (const std::string sibling = WaitingSibling(file); !sibling.empty())
-    Fail(fmt::format("beside it stands {}, which is no file", sibling));
+  if (const std::string problem = WhyNeighboursCannotBeRead(file); !problem.empty()) Fail(problem);
   gdal_->dataset.reset(
       GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, kDrivers));
   dataset_ = gdal_->dataset.get();
   if (dataset_ == nullptr)
     Fail(fmt::format("not readable as an ESRI ASCII grid or a GeoTIFF ({})", QuietGdal::LastError()));
+  CheckComplaints();
   CheckBands();
   band_ = dataset_->GetRasterBand(1);
   CheckTransform();
@@ -94,13 +63,26 @@ RasterFile::RasterFile(const GridTerrainSpec& spec) : spec_(spec), gdal_(std::ma
   cell_y_m_ *= units_.length.m;
   CheckBlocks();
   ReadCoding();
-  if (in_order_) CheckWords(file_);
+  CheckComplaints();
+  if (in_order_) CheckText();
 }
 
 RasterFile::~RasterFile() = default;
 
 void RasterFile::Fail(const std::string& problem) const {
   FailAt(spec_.file_place, fmt::format("terrain.grid.file: '{}': {}", spec_.file, problem));
+}
+
+// GDAL goes on without what it could not read: a scale, a unit, a coordinate system, a part of the heights.
+void RasterFile::CheckComplaints() const {
+  const std::string& complaint = gdal_->quiet.Complaint();
+  if (complaint.empty()) return;
+  const bool no_database = complaint.find("proj.db") != std::string::npos;
+  Fail(fmt::format("not read as it stands ({}); {}", complaint,
+                   no_database
+                       ? "PROJ needs its own database to know coordinate systems: install proj-data, or "
+                         "unset PROJ_DATA and PROJ_LIB"
+                       : "mend the file (gdalinfo shows more), or write it anew (gdal_translate)"));
 }
 
 // One band of heights, and perhaps one that says where they are.
@@ -129,6 +111,12 @@ void RasterFile::CheckTransform() {
   in_order_ = dataset_->GetDriver() != nullptr && EQUAL(dataset_->GetDriver()->GetDescription(), "AAIGrid");
 }
 
+void RasterFile::CheckText() const {
+  const std::string problem = WhyTextGridIsWrong(ReadFile(file_, kMaxModelBytes), columns_, rows_,
+                                                 band_->GetRasterDataType() == GDT_Int32);
+  if (!problem.empty()) Fail(problem);
+}
+
 // GDAL reads whole blocks, whose size the file tells.
 void RasterFile::CheckBlocks() const {
   int block_columns = 0, block_rows = 0;
@@ -139,45 +127,6 @@ void RasterFile::CheckBlocks() const {
                     columns_, rows_, block_columns, block_rows, kMaxWindowCells));
 }
 
-// GDAL takes a word among the heights of a text grid for 0, and the numbers as they come: where a row has not as many as
-// the header says, all rows after it would be shifted.
-void RasterFile::CheckWords(const std::string& file) const {
-  const std::string text = ReadFile(file, kMaxModelBytes);
-  constexpr std::string_view kSpace = " \t\r\n";
-  std::size_t heights = 0, in_line = 0, in_first_line = 0, line = 1, begin = 0;
-  bool after_name = false, alike = true;
-  const auto end_line = [&] {
-    if (in_line != 0 && in_first_line == 0) in_first_line = in_line;
-    alike = alike && (in_line == 0 || in_line == in_first_line);
-    heights += in_line;
-    in_line = 0;
-  };
-  while (begin < text.size()) {
-    if (text[begin] == '\n') ++line, end_line();
-    if (kSpace.find(text[begin]) != std::string_view::npos) {
-      ++begin;
-      continue;
-    }
-    const std::size_t end = std::min(text.find_first_of(kSpace, begin), text.size());
-    const std::string_view word = std::string_view(text).substr(begin, end - begin);
-    const bool name = IsHeaderName(word);
-    if (!name && !IsGridNumber(word)) Fail(fmt::format("line {}: '{}' is no number", line, word));
-    in_line += !name && !after_name;
-    after_name = name;
-    begin = end;
-  }
-  end_line();
-  const std::size_t columns = static_cast<std::size_t>(columns_), cells = columns * rows_;
-  const bool in_rows =
-      !alike || in_first_line == cells || (in_first_line > 0 && columns % in_first_line == 0);
-  if (heights == cells && in_rows) return;
-  Fail(
-      fmt::format("{} heights{}, but its header says ncols {} and nrows {}, which makes {}; correct the "
-                  "header, or bring the whole "
-                  "file",
-                  heights, alike ? fmt::format(", {} a line", in_first_line) : "", columns_, rows_, cells));
-}
-
 void RasterFile::ReadCoding() {
   int told = 0;
   if (const double scale = band_->GetScale(&told); told != 0) scale_ = scale;
@@ -186,9 +135,26 @@ void RasterFile::ReadCoding() {
     Fail(fmt::format(
         "its heights are {:g} times the stored number and {:g}; allowed: a finite scale other than 0", scale_,
         offset_));
+  // Before 3.7 GDAL had no such type, and gives what is stored as 0 .. 255.
+  const char* const pixels = band_->GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  signed_bytes_ = band_->GetRasterDataType() == GDT_Byte && pixels != nullptr && EQUAL(pixels, "SIGNEDBYTE");
   const int flags = band_->GetMaskFlags();
   const bool masked = (flags & (GMF_ALL_VALID | GMF_NODATA)) == 0;  // NODATA values are compared here
   if (mask_ == nullptr && masked) mask_ = band_->GetMaskBand();
+  CheckMask();
+}
+
+// GDAL passes over a mask that it does not understand.
+void RasterFile::CheckMask() const {
+  if (const std::string beside = MaskBeside(file_); mask_ == nullptr && !beside.empty())
+    Fail(
+        fmt::format("beside it stands {}, which is no mask that can be read; allowed: a GeoTIFF as GDAL "
+                    "writes masks; mend "
+                    "it, or take it away",
+                    beside));
+  if (mask_ == nullptr || (mask_->GetXSize() == columns_ && mask_->GetYSize() == rows_)) return;
+  Fail(fmt::format("its mask has {} x {} cells; allowed: as many as its heights, {} x {}", mask_->GetXSize(),
+                   mask_->GetYSize(), columns_, rows_));
 }
 
 std::vector<double> RasterFile::Read(const CellWindow& window) const {
@@ -196,6 +162,9 @@ std::vector<double> RasterFile::Read(const CellWindow& window) const {
   std::vector<double> height(cells);
   std::vector<unsigned char> valid(mask_ != nullptr ? cells : 0);
   ReadRows(window, height.data(), valid.data());
+  constexpr double kLargestByte = 127.0, kBytes = 256.0;
+  if (signed_bytes_)
+    for (double& h : height) h -= h > kLargestByte ? kBytes : 0.0;
   CheckHoles(window, height, valid);
   CheckMarks(window, height);
   for (double& h : height) h = (scale_ * h + offset_) * units_.height.m;
@@ -222,6 +191,7 @@ void RasterFile::ReadRows(const CellWindow& window, double* raw, unsigned char* 
                         GDT_Byte, 0, 0) != CE_None)
       Fail(fmt::format("row {} of its mask cannot be read ({})", file_row + 1, QuietGdal::LastError()));
   }
+  CheckComplaints();
 }
 
 void RasterFile::CheckHoles(const CellWindow& window, const std::vector<double>& raw,
@@ -336,7 +306,7 @@ std::string RasterFile::Note() const {
   if (units_.height.m != 1.0) add(fmt::format("heights in {}", units_.height.name));
   if (scale_ != 1.0 || offset_ != 0.0)
     add(fmt::format("heights are {:g} times what is stored, and {:g}", scale_, offset_));
-  if (band_->GetRasterDataType() == GDT_Byte)
+  if (band_->GetRasterDataType() == GDT_Byte && !signed_bytes_)
     add("heights of 8 bits, 0 .. 255 (a hillshade or another picture would look so, and is none)");
   return note;
 }

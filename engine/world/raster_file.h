@@ -50,11 +50,13 @@ class RasterFile {
   class Gdal;
 
   [[noreturn]] void Fail(const std::string& problem) const;
+  void CheckComplaints() const;
   void CheckBands();
   void CheckTransform();
   void CheckBlocks() const;
-  void CheckWords(const std::string& file) const;
+  void CheckText() const;
   void ReadCoding();
+  void CheckMask() const;
   void ReadRows(const CellWindow& window, double* raw, unsigned char* valid) const;
   void CheckHoles(const CellWindow& window, const std::vector<double>& raw,
                   const std::vector<unsigned char>& valid) const;
@@ -71,7 +73,7 @@ class RasterFile {
   std::string file_;                // canonical
   RasterUnits units_;
   double scale_ = 1.0, offset_ = 0.0;  // height in its unit = scale * value + offset
-  bool north_up_ = true, in_order_ = false;
+  bool north_up_ = true, in_order_ = false, signed_bytes_ = false;
   int columns_ = 0, rows_ = 0;
   double cell_x_m_ = 0.0, cell_y_m_ = 0.0;
 };

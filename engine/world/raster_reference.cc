@@ -8,12 +8,15 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/world/geo_keys.h"
+#include "engine/world/quiet_gdal.h"
 #include "engine/world/utm_zone.h"
 
 namespace ed3r::world {
@@ -38,6 +41,7 @@ class Reference {
     dataset.GetGeoTransform(transform_.data());
     if (const OGRSpatialReference* stored = dataset.GetSpatialRef(); stored != nullptr && !stored->IsEmpty())
       system_ = *stored;
+    keys_ = ReadGeoKeys(file);
     ReadPrj();
   }
 
@@ -121,8 +125,22 @@ class Reference {
                            KnownLengthUnits()));
       }
     }
+    told = WithLengthKey(told);
     CheckSame(told, spec_.length_unit, "lengths", "length_unit");
     return told ? *told : spec_.length_unit.value_or(LengthUnit{1.0, "m"});
+  }
+
+  // Where GDAL does not know a coordinate system it takes metres, whatever the key beside it says.
+  std::optional<LengthUnit> WithLengthKey(const std::optional<LengthUnit>& told) const {
+    const std::string word = UnitOfKey(keys_, kProjectedUnitsKey);
+    if (word.empty()) return told;
+    const std::optional<LengthUnit> key = FindLengthUnit(word);
+    if (key && (!told || key->name == told->name)) return key;
+    Fail(
+        fmt::format("its lengths are in {} by its key ProjLinearUnits, and in {} by its coordinate system; "
+                    "give it one that "
+                    "is known (gdal_edit.py -a_srs EPSG:NUMBER)",
+                    word, told ? told->name : "nothing known"));
   }
 
   void CheckSame(const std::optional<LengthUnit>& told, const std::optional<LengthUnit>& asked,
@@ -132,7 +150,7 @@ class Reference {
                        asked->name, key));
   }
 
-  // The unit of the band, of the vertical coordinate system, of the old .prj: all that say one must agree.
+  // The unit of the band, of the vertical coordinate system, of the GeoTIFF's key, of the old .prj: all that say one must agree.
   LengthUnit Height(const LengthUnit& length) const {
     std::optional<LengthUnit> told;
     const auto hear = [&](const std::string& word) {
@@ -143,13 +161,15 @@ class Reference {
             "its heights are in '{}', which is unknown; add 'height_unit: m' (or {}) to terrain.grid", word,
             KnownLengthUnits()));
       if (unit && told && told->name != unit->name)
-        Fail(fmt::format(
-            "its heights are in {} here and in {} there (unit of the band, vertical system, .prj)",
-            told->name, unit->name));
+        Fail(
+            fmt::format("its heights are in {} here and in {} there (unit of the band, vertical system, key "
+                        "VerticalUnits, .prj); correct the one that is wrong",
+                        told->name, unit->name));
       if (unit) told = unit;
     };
     hear(dataset_.GetRasterBand(1)->GetUnitType());
     hear(VerticalUnit());
+    hear(UnitOfKey(keys_, kVerticalUnitsKey));
     hear(prj_height_);
     CheckSame(told, spec_.height_unit, "heights", "height_unit");
     if (told) return *told;
@@ -203,6 +223,7 @@ class Reference {
   // ellipsoid of its own system.
   void CheckScale(const LengthUnit& length) const {
     if (!system_.IsProjected()) return;
+    const QuietGdal quiet;  // what lies outside of a projection is complained of, and changes no number
     OGRSpatialReference flat = system_;
     if (flat.IsCompound()) flat.StripVertical();
     flat.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -246,6 +267,7 @@ class Reference {
   const GridTerrainSpec& spec_;
   std::array<double, 6> transform_{};  // x = t0 + t1 column + t2 row, y = t3 + t4 column + t5 row
   OGRSpatialReference system_;
+  std::map<int, int> keys_;  // of a GeoTIFF
   std::string prj_file_, prj_height_;
 };
 

@@ -120,9 +120,9 @@ TEST_F(RasterTest, NobodyGuessesTheUnitOfHeights) {
   EXPECT_EQ(Message(raster, "    height_unit: ft\n"),
             "'g.tif': its heights are in m, terrain.grid.height_unit says ft; leave height_unit out");
   raster.system = "EPSG:2263+6360";
-  EXPECT_EQ(
-      Message(raster),
-      "'g.tif': its heights are in m here and in us-ft there (unit of the band, vertical system, .prj)");
+  EXPECT_EQ(Message(raster),
+            "'g.tif': its heights are in m here and in us-ft there (unit of the band, vertical system, key "
+            "VerticalUnits, .prj); correct the one that is wrong");
   EXPECT_EQ(Message(NewYork(), "    height_unit: yards\n"),
             "w.yaml:7:18: terrain.grid.height_unit: 'yards' is not allowed; allowed: m | ft | us-ft | dm | "
             "cm | mm | km");

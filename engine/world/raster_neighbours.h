@@ -1,0 +1,16 @@
+// The files beside a raster that GDAL reads with it because they are called alike.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace ed3r::world {
+
+// What is wrong with them, "" for nothing: a pipe, which would be waited for; an .aux.xml that GDAL would pass over
+// without a word, and so its units, scale and coordinate system. GDAL must be quiet.
+std::string WhyNeighboursCannotBeRead(const std::filesystem::path& file);
+
+// The mask beside it, whatever the case of its ending, or "".
+std::string MaskBeside(const std::filesystem::path& file);
+
+}  // namespace ed3r::world

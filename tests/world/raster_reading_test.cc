@@ -1,0 +1,247 @@
+// What GDAL passes over without a word is refused: side files and tags that are cut, keys of units; and nothing of its
+// environment changes a number.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/core/check.h"
+#include "engine/world/scene.h"
+#include "engine/world/terrain.h"
+#include "tests/world/test_rasters.h"
+#include "tests/world/world_files.h"
+
+namespace ed3r::world {
+namespace {
+
+constexpr double kFootM = 0.3048;
+
+class RasterReadingTest : public ::testing::Test {
+ protected:
+  // The height of the ground at [100, 80] m, or what was said of the file.
+  std::string Height(const std::string& file = "g.tif") const {
+    try {
+      const auto scene = Scene::Load(folder.Write("w.yaml", GridWorld(fmt::format("    file: {}\n", file))));
+      return fmt::format("{:.2f}", scene->Ground().HeightAt(100.0, 80.0));
+    } catch (const UserError& error) {
+      const std::string prefix = folder.Path(""), begin = "w.yaml:6:11: terrain.grid.file: ";
+      std::string text = error.what();
+      for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix))
+        text.erase(at, prefix.size());
+      return text.starts_with(begin) ? text.substr(begin.size()) : text;
+    }
+  }
+
+  // Heights of 0 .. 44 stored, in UTM.
+  TestRaster Slope() const {
+    TestRaster raster;
+    raster.system = "EPSG:32633";
+    raster.stored = [](int column, int row) { return 2.0 * column + 3.0 * row; };
+    return raster;
+  }
+
+  // Turns bytes of a file into others.
+  void Patch(const std::string& name, const std::string& from, const std::string& to) const {
+    std::ifstream file(folder.Path(name), std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    const auto at = bytes.find(from);
+    ASSERT_NE(at, std::string::npos);
+    folder.Write(name, bytes.replace(at, to.size(), to));
+  }
+
+  // A GeoTIFF's key: its number, where it is (here), how many, its value.
+  static std::string Key(int number, int value) { return Shorts({number, 0, 1, value}); }
+  static std::string Shorts(const std::vector<int>& numbers) {
+    std::string bytes;
+    for (const int number : numbers) {
+      bytes += static_cast<char>(number & 0xff);
+      bytes += static_cast<char>(number >> 8);
+    }
+    return bytes;
+  }
+
+  const TestFolder folder;
+};
+
+const std::string kFeet =
+    "<PAMDataset><PAMRasterBand band=\"1\"><UnitType>ft</UnitType></PAMRasterBand></PAMDataset>\n";
+
+TEST_F(RasterReadingTest, AnAuxXmlThatIsNotUnderstoodIsRefused) {
+  WriteRaster(folder.Path("g.tif"), Slope());
+  EXPECT_EQ(Height(), "44.00");
+  folder.Write("g.tif.aux.xml", kFeet);
+  EXPECT_EQ(Height(), fmt::format("{:.2f}", 44.0 * kFootM));
+  for (const std::string& text :
+       {std::string(), kFeet.substr(0, 60), std::string(100, '\0'), std::string("\xFF\xFE<\0P\0A\0M\0", 10),
+        "<?xml version=\"1.0\"?>" + kFeet}) {
+    folder.Write("g.tif.aux.xml", text);
+    EXPECT_EQ(
+        Height(),
+        "'g.tif': beside it stands g.tif.aux.xml, which is not understood; allowed: XML that begins with "
+        "<PAMDataset>, whole; mend it, or take it away");
+  }
+  std::filesystem::remove(folder.Path("g.tif.aux.xml"));
+  folder.Write("g.tif.AUX.XML", kFeet);
+  EXPECT_EQ(
+      Height(),
+      "'g.tif': beside it stands g.tif.AUX.XML, which is not read under that name; call it g.tif.aux.xml");
+}
+
+TEST_F(RasterReadingTest, AMaskThatCannotBeReadIsRefused) {
+  TestRaster mask;
+  mask.type = GDT_Byte;
+  mask.stored = [](int column, int row) { return column == 5 && row == 4 ? 0.0 : 255.0; };
+  WriteRaster(folder.Path("g.tif"), Slope());
+  const auto write_mask = [&](bool is_mask) {
+    WriteRaster(folder.Path("g.tif.msk"), mask);
+    if (!is_mask) return;
+    auto* dataset = GDALDataset::Open(folder.Path("g.tif.msk").c_str(), GDAL_OF_UPDATE);
+    ASSERT_NE(dataset, nullptr);
+    dataset->SetMetadataItem("INTERNAL_MASK_FLAGS_1", "2");
+    GDALClose(dataset);
+  };
+  write_mask(true);
+  const std::string hole = "'g.tif': 1 of the 99 cells that the area needs have no data (NODATA or masked)";
+  EXPECT_EQ(Height().substr(0, hole.size()), hole);
+  const std::string refusal =
+      "'g.tif': beside it stands g.tif.msk, which is no mask that can be read; allowed: a GeoTIFF as GDAL "
+      "writes "
+      "masks; mend it, or take it away";
+  std::filesystem::resize_file(folder.Path("g.tif.msk"), 100);
+  EXPECT_EQ(Height(), refusal);
+  folder.Write("g.tif.msk", "");
+  EXPECT_EQ(Height(), refusal);
+  folder.Write("g.tif.msk", "no mask");
+  EXPECT_EQ(Height(), refusal);
+  std::filesystem::remove(folder.Path("g.tif.msk"));
+  write_mask(false);
+  EXPECT_EQ(Height(), refusal);
+  mask.columns = 12;
+  write_mask(true);
+  EXPECT_EQ(Height(), "'g.tif': its mask has 12 x 9 cells; allowed: as many as its heights, 11 x 9");
+}
+
+TEST_F(RasterReadingTest, ACutTagIsRefused) {
+  TestRaster raster = Slope();
+  raster.scale = 0.5;
+  WriteRaster(folder.Path("g.tif"), raster);
+  EXPECT_EQ(Height(), "22.00");
+  Patch("g.tif", "</GDALMetadata>", "</GDALMetabata>");
+  const std::string text = Height();
+  EXPECT_TRUE(text.starts_with("'g.tif': not read as it stands (")) << text;
+  EXPECT_TRUE(text.ends_with("); mend the file (gdalinfo shows more), or write it anew (gdal_translate)"))
+      << text;
+}
+
+// Each of them changed heights.
+TEST_F(RasterReadingTest, GdalsEnvironmentChangesNothing) {
+  TestRaster raster = Slope();
+  WriteRaster(folder.Path("g.tif"), raster);
+  folder.Write("g.tif.aux.xml", kFeet);
+  folder.WriteGrid("g.asc", 12, 10, 10.0, [](int column, int row) { return 1.25 * column + row; });
+  for (const auto& [name, value] :
+       std::vector<std::pair<std::string, std::string>>{{"GDAL_PAM_ENABLED", "NO"},
+                                                        {"GDAL_DISABLE_READDIR_ON_OPEN", "EMPTY_DIR"},
+                                                        {"AAIGRID_DATATYPE", "Int32"},
+                                                        {"GTIFF_IGNORE_READ_ERRORS", "YES"},
+                                                        {"GDAL_GEOREF_SOURCES", "NONE"},
+                                                        {"GTIFF_HONOUR_NEGATIVE_SCALEY", "YES"}}) {
+    SCOPED_TRACE(name);
+    setenv(name.c_str(), value.c_str(), 1);
+    EXPECT_EQ(Height(), fmt::format("{:.2f}", 44.0 * kFootM));
+    EXPECT_EQ(Height("g.asc"), "20.50");
+    unsetenv(name.c_str());
+    CPLSetConfigOption(name.c_str(), value.c_str());  // as its configuration file does
+    EXPECT_EQ(Height(), fmt::format("{:.2f}", 44.0 * kFootM));
+    EXPECT_EQ(Height("g.asc"), "20.50");
+    CPLSetConfigOption(name.c_str(), nullptr);
+  }
+}
+
+TEST_F(RasterReadingTest, ACoordinateSystemThatIsNotKnownIsRefused) {
+  WriteRaster(folder.Path("g.tif"), Slope());
+  folder.Write("g.tif.aux.xml", "<PAMDataset><SRS>EPSG:30000</SRS></PAMDataset>");
+  EXPECT_EQ(Height(),
+            "'g.tif': not read as it stands (PROJ: proj_create_from_database: crs not found); mend the file "
+            "(gdalinfo "
+            "shows more), or write it anew (gdal_translate)");
+  std::filesystem::remove(folder.Path("g.tif.aux.xml"));
+  Patch("g.tif", Key(3072, 32633), Key(3072, 30000));
+  EXPECT_TRUE(
+      Height().starts_with("'g.tif': not read as it stands (PROJ: proj_create_from_database: crs not found)"))
+      << Height();
+}
+
+// Was read as metres.
+TEST_F(RasterReadingTest, TheUnitOfAnUnknownSystemCounts) {
+  WriteRaster(folder.Path("g.tif"), Slope());
+  Patch("g.tif", Key(3072, 32633), Key(3072, 32767));
+  EXPECT_EQ(Height(), "44.00");
+  for (const auto& [code, unit] :
+       {std::pair(9002, "ft"), std::pair(9003, "us-ft"), std::pair(9005, "EPSG unit 9005")}) {
+    WriteRaster(folder.Path("g.tif"), Slope());
+    Patch("g.tif", Key(3072, 32633), Key(3072, 32767));
+    Patch("g.tif", Key(3076, 9001), Key(3076, code));
+    EXPECT_EQ(Height(),
+              fmt::format("'g.tif': its lengths are in {} by its key ProjLinearUnits, and in m by its "
+                          "coordinate system; give it one that is known (gdal_edit.py -a_srs EPSG:NUMBER)",
+                          unit));
+  }
+}
+
+TEST_F(RasterReadingTest, TheUnitOfHeightsBesideAVerticalSystemCounts) {
+  OGRSpatialReference utm;
+  utm.importFromEPSG(32633);
+  char* text = nullptr;
+  utm.exportToWkt(&text);
+  TestRaster raster = Slope();
+  raster.system = fmt::format(
+      "COMPD_CS[\"both\",{},VERT_CS[\"height\",VERT_DATUM[\"North American Vertical Datum 1988\",2005],"
+      "UNIT[\"US survey foot\",0.304800609601219,AUTHORITY[\"EPSG\",\"9003\"]],AXIS[\"Up\",UP]]]",
+      text);
+  CPLFree(text);
+  WriteRaster(folder.Path("g.tif"), raster);
+  EXPECT_EQ(Height(), fmt::format("{:.2f}", 44.0 * 1200.0 / 3937.0));
+  Patch("g.tif", Shorts({4097, 34737, 7, 5}), Key(4096, 5703));  // in metres by itself
+  EXPECT_EQ(Height(),
+            "'g.tif': its heights are in m here and in us-ft there (unit of the band, vertical system, key "
+            "VerticalUnits, .prj); correct the one that is wrong");
+}
+
+TEST_F(RasterReadingTest, HeightsOfEightBitsMayHaveASign) {
+  TestRaster raster = Slope();
+  raster.type = GDT_Byte;
+  raster.stored = [](int column, int row) {
+    return column + row < 9 ? 256 - 9 + column + row : column + row - 9;
+  };
+  WriteRaster(folder.Path("g.tif"), raster);
+  Patch("g.tif", Shorts({339, 3, 1, 0, 1}), Shorts({339, 3, 1, 0, 2}));
+  EXPECT_EQ(Height(), "18.00");  // from -9 to 9
+}
+
+TEST_F(RasterReadingTest, ATextGridsHeaderSaysEachThingOnce) {
+  const auto says = [&](const std::string& header, const std::string& first) {
+    std::string grid = "ncols 12\nnrows 10\n" + header + "xllcorner 0\nyllcorner 0\n" + first;
+    for (int i = 1; i < 120; ++i) grid += fmt::format(" {}", i % 12);
+    folder.Write("g.asc", grid + "\n");
+    return Height("g.asc");
+  };
+  EXPECT_EQ(says("cellsize 10\n", "0"), "10.00");
+  EXPECT_EQ(says("cellsize 10\nCELLSIZE 30\n", "0"),
+            "'g.asc': line 4: 'CELLSIZE' is there twice; leave one out");
+  EXPECT_EQ(says("dx 10\ndy 10\ncellsize 30\n", "0"),
+            "'g.asc': line 5: 'cellsize' beside 'dx' or 'dy'; leave one out");
+  EXPECT_EQ(says("cellsize 10\n", "4294967298"),
+            "'g.asc': line 6: '4294967298' is no height; allowed: -2147483648 .. 2147483647");
+  std::string text = "ncols 4294967308\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 10\n0";
+  for (int i = 1; i < 120; ++i) text += fmt::format(" {}", i % 12);
+  folder.Write("g.asc", text + "\n");
+  EXPECT_EQ(Height("g.asc"), "'g.asc': line 1: ncols is '4294967308'; allowed: a whole number of 32 bits");
+}
+
+}  // namespace
+}  // namespace ed3r::world
