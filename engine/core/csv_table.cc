@@ -24,15 +24,14 @@ std::string_view Trimmed(std::string_view text) {
   return text;
 }
 
-// Calls action(begin, end) for each comma-separated cell; commas between quotes belong to the cell. False: a quote is not
-// closed.
+// Calls action(begin, end) for each cell; delimiters between quotes belong to the cell. False: a quote is not closed.
 template <class Action>
-bool ForEachCell(std::string_view line, Action action) {
+bool ForEachCell(std::string_view line, char delimiter, Action action) {
   std::size_t begin = 0;
   bool quoted = false;
   for (std::size_t i = 0; i <= line.size(); ++i) {
     if (i < line.size() && line[i] == '"') quoted = !quoted;
-    if (i < line.size() && (quoted || line[i] != ',')) continue;
+    if (i < line.size() && (quoted || line[i] != delimiter)) continue;
     action(begin, i);
     begin = i + 1;
   }
@@ -56,10 +55,11 @@ CsvTable CsvTable::Read(const std::string& path, CsvComments comments) {
   return Parse(path, ReadFile(path, kMaxTextBytes), comments);
 }
 
-CsvTable CsvTable::Parse(std::string path, std::string text, CsvComments comments) {
+CsvTable CsvTable::Parse(std::string path, std::string text, CsvComments comments, char delimiter) {
   CsvTable table;
   table.path_ = std::move(path);
   table.text_ = std::move(text);
+  table.delimiter_ = delimiter;
   ED3R_CHECK(table.text_.size() <= kMaxTextBytes, table.path_);  // cells are found by 32 bits
   const std::string_view all = table.text_;
   int first_blank = 0;
@@ -89,7 +89,7 @@ CsvTable CsvTable::Parse(std::string path, std::string text, CsvComments comment
 void CsvTable::ReadHeader(std::string_view line, int number) {
   header_line_ = number;
   std::set<std::string, std::less<>> names;
-  ForEachCell(line, [&](std::size_t begin, std::size_t end) {
+  ForEachCell(line, delimiter_, [&](std::size_t begin, std::size_t end) {
     const std::string name(Trimmed(line.substr(begin, end - begin)));
     const auto refuse = [&](const std::string& problem) {
       throw UserError(OneLine(fmt::format("{}:{}:{}: {}", path_, number, begin + 1, problem)));
@@ -104,7 +104,7 @@ void CsvTable::ReadHeader(std::string_view line, int number) {
 
 void CsvTable::ReadRow(std::size_t begin, std::string_view line, int number) {
   const std::size_t before = cells_.size();
-  const bool closed = ForEachCell(line, [&](std::size_t from, std::size_t to) {
+  const bool closed = ForEachCell(line, delimiter_, [&](std::size_t from, std::size_t to) {
     cells_.push_back({static_cast<std::uint32_t>(begin + from), static_cast<std::uint32_t>(begin + to)});
   });
   if (!closed)

@@ -25,8 +25,9 @@ class CsvTable {
   // Throws UserError: unreadable or empty file, a repeated or empty column name, a row with another number of
   // cells, more than kMaxCsvColumns columns or kMaxTextBytes (file.h).
   static CsvTable Read(const std::string& path, CsvComments comments = CsvComments::kNone);
-  // The same from text; `path` only names it in messages.
-  static CsvTable Parse(std::string path, std::string text, CsvComments comments = CsvComments::kNone);
+  // The same from text; `path` only names it in messages. `delimiter`: between cells; a semicolon or a tab.
+  static CsvTable Parse(std::string path, std::string text, CsvComments comments = CsvComments::kNone,
+                        char delimiter = ',');
 
   CsvTable(CsvTable&&) = default;
 
@@ -59,6 +60,7 @@ class CsvTable {
 
   std::string path_;
   std::string text_;
+  char delimiter_ = ',';
   int header_line_ = 1;
   std::vector<std::string> columns_;
   std::vector<Span> cells_;  // rows x columns, into text_

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "engine/core/check.h"
+#include "engine/core/decimal_commas.h"
 
 namespace ed3r::world {
 namespace {
@@ -52,7 +53,7 @@ char DelimiterOf(std::string_view header, const std::string& path) {
 
 }  // namespace
 
-CommaSeparated ToCommaSeparated(const std::string& path, std::string text) {
+DelimitedText ToDelimitedText(const std::string& path, std::string text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw UserError(fmt::format("{}: UTF-16 text; save it as UTF-8", path));
   if (text.find('\0') != std::string::npos)
@@ -64,23 +65,13 @@ CommaSeparated ToCommaSeparated(const std::string& path, std::string text) {
   const Line header = FindHeader(text);
   const char delimiter =
       DelimiterOf(std::string_view(text).substr(header.begin, header.end - header.begin), path);
-  CommaSeparated table{std::move(text), delimiter != ','};
-  if (table.decimal_commas) {
-    bool quoted = false;
-    for (std::size_t i = header.begin; i < table.text.size(); ++i) {
-      char& c = table.text[i];
-      if (c == '\n') quoted = false;
-      if (c == '"') quoted = !quoted;
-      if (quoted) continue;
-      if (c == ',') c = '.';
-      if (c == delimiter) c = ',';
-    }
-  }
-  if (std::string_view(table.text).substr(header.begin).starts_with("\"\",")) {
+  DelimitedText table{std::move(text), delimiter};
+  if (delimiter != ',') DecimalCommasToPoints(path, table.text, header.end, delimiter);
+  if (std::string_view(table.text).substr(header.begin).starts_with(std::string("\"\"") + delimiter)) {
     table.text[header.begin] = '_';
     table.text[header.begin + 1] = '1';
   }
-  if (header.begin < table.text.size() && table.text[header.begin] == ',')
+  if (header.begin < table.text.size() && table.text[header.begin] == delimiter)
     table.text.insert(header.begin, 1, '_');
   return table;
 }

@@ -94,12 +94,11 @@ constexpr const char* kEstimate = "'estimate_missing: conifers' (or deciduous, m
 }  // namespace
 
 StemTable::StemTable(const StemMapSpec& spec)
-    : StemTable(spec, ToCommaSeparated(spec.file, ReadFile(spec.file))) {}
+    : StemTable(spec, ToDelimitedText(spec.file, ReadFile(spec.file))) {}
 
-StemTable::StemTable(const StemMapSpec& spec, CommaSeparated file)
+StemTable::StemTable(const StemMapSpec& spec, DelimitedText file)
     : spec_(spec),
-      decimal_commas_(file.decimal_commas),
-      table_(CsvTable::Parse(spec.file, std::move(file.text), CsvComments::kHash)) {
+      table_(CsvTable::Parse(spec.file, std::move(file.text), CsvComments::kHash, file.delimiter)) {
   for (const auto& [name, header] : spec.columns) FindMapped(name, header);
   for (const StemColumn& column : kNames)
     if (where_[column.quantity].column == nullptr) FindByName(column);
@@ -187,7 +186,6 @@ std::optional<double> StemTable::Number(std::size_t row, StemQuantity quantity, 
         fmt::format("{}'{}' is missing; measure it or leave the tree out{}", table_.Where(row, where.index),
                     text, meaning.optional ? fmt::format(", or add {} to forest.stem_map", kEstimate) : ""));
   }
-  if (decimal_commas_) std::replace(text.begin(), text.end(), ',', '.');
   const double per_m = where.column->per_m;
   const double min = (where.column->base ? 0.0 : meaning.min_m) * per_m, max = max_m * per_m;
   double value = 0.0;

@@ -53,7 +53,7 @@ class StemTable {
     std::size_t index = 0;
   };
 
-  StemTable(const StemMapSpec& spec, CommaSeparated file);
+  StemTable(const StemMapSpec& spec, DelimitedText file);
   void FindMapped(const std::string& name, const std::string& header);
   void FindByName(const StemColumn& column);
   void CheckAbsence(StemQuantity quantity) const;
@@ -62,7 +62,6 @@ class StemTable {
   std::optional<double> Number(std::size_t row, StemQuantity quantity, double max_m) const;
 
   const StemMapSpec& spec_;
-  bool decimal_commas_;
   CsvTable table_;
   std::array<Where, kStemQuantities> where_{};
 };

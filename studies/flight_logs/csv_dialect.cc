@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/core/check.h"
+#include "engine/core/decimal_commas.h"
 #include "engine/core/message.h"
 
 namespace ed3r::flight_logs {
@@ -70,7 +71,8 @@ class Standard {
       if (text_[i] == '\r' && (i + 1 == text_.size() || text_[i + 1] != '\n')) text_[i] = '\n';
   }
 
-  int Run() {
+  // The delimiter, and the rows left out.
+  std::pair<char, int> Run() {
     std::size_t next = text_.starts_with("\xEF\xBB\xBF") ? 3 : 0;
     for (number_ = 1; next < text_.size(); ++number_) {
       begin_ = next;
@@ -82,12 +84,12 @@ class Standard {
       if (IsComment(line) || (columns_ == 0 && IsSeparatorLine(line)))
         text_[begin_] = '#';
       else if (columns_ == 0)
-        ReadHeader(line);
+        ReadHeader(line), rows_begin_ = next;
       else
         ReadRow(line);
-      if (delimiter_ != ',' && columns_ != 0) Replace(newline);
     }
-    return bad_;
+    if (delimiter_ != ',') DecimalCommasToPoints(path_, text_, rows_begin_, delimiter_);
+    return {delimiter_, bad_};
   }
 
  private:
@@ -131,17 +133,6 @@ class Standard {
     }
   }
 
-  void Replace(std::size_t end) {
-    bool quoted = false;
-    for (std::size_t i = begin_; i < end; ++i) {
-      if (text_[i] == '"') quoted = !quoted;
-      if (text_[i] == ',')
-        text_[i] = '.';
-      else if (text_[i] == delimiter_ && !quoted)
-        text_[i] = ',';
-    }
-  }
-
   [[noreturn]] void Fail(const std::string& what) const {
     throw UserError(OneLine(fmt::format("{}:{}:1: {}", path_, number_, what)));
   }
@@ -150,15 +141,15 @@ class Standard {
   std::string& text_;
   bool skip_bad_;
   char delimiter_ = ',', forced_ = 0;
-  std::size_t columns_ = 0, begin_ = 0;
+  std::size_t columns_ = 0, begin_ = 0, rows_begin_ = 0;
   int number_ = 1, bad_ = 0;
 };
 
 }  // namespace
 
-std::string StandardCsv(const std::string& path, std::string text, bool skip_bad, int& bad) {
-  bad = Standard(path, text, skip_bad).Run();
-  return text;
+StandardCsv ToStandardCsv(const std::string& path, std::string text, bool skip_bad) {
+  const auto [delimiter, bad] = Standard(path, text, skip_bad).Run();
+  return {std::move(text), delimiter, bad};
 }
 
 }  // namespace ed3r::flight_logs

@@ -38,11 +38,10 @@ LogTable ParseLog(const std::string& path, std::string bytes, const LogReading& 
                     "AirData exports");
   if (bytes.starts_with("FMT, 128"))
     throw UserError(path + ": ArduPilot's log as text; give the .bin file that it was made from");
-  int bad = 0;
-  CsvTable table =
-      CsvTable::Parse(path, StandardCsv(path, std::move(bytes), reading.skip_bad, bad), CsvComments::kHash);
-  if (IsAirDataLog(table)) return LogTable(ReadAirDataLog(table, reading, bad));
-  return LogTable(std::move(table), bad);
+  StandardCsv csv = ToStandardCsv(path, std::move(bytes), reading.skip_bad);
+  CsvTable table = CsvTable::Parse(path, std::move(csv.text), CsvComments::kHash, csv.delimiter);
+  if (IsAirDataLog(table)) return LogTable(ReadAirDataLog(table, reading, csv.bad));
+  return LogTable(std::move(table), csv.bad);
 }
 
 }  // namespace ed3r::flight_logs

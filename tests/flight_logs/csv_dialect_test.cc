@@ -1,6 +1,11 @@
 #include "studies/flight_logs/csv_dialect.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "studies/flight_logs/read_log.h"
 #include "tests/flight_logs/complaint.h"
@@ -9,17 +14,42 @@ namespace ed3r::flight_logs {
 namespace {
 
 std::string Standard(const std::string& text, bool skip_bad = false) {
-  int bad = 0;
-  return StandardCsv("x.csv", text, skip_bad, bad);
+  return ToStandardCsv("x.csv", text, skip_bad).text;
 }
 
 TEST(CsvDialectTest, SemicolonsAndTabsWithDecimalCommas) {
-  EXPECT_EQ(Standard("t;p\n0,5;400,25\n"), "t,p\n0.5,400.25\n");
-  EXPECT_EQ(Standard("t\tp\n0,5\t400\n"), "t,p\n0.5,400\n");
-  EXPECT_EQ(Standard("sep=;\nt;p\n1;2\n"), "#ep=;\nt,p\n1,2\n");
+  EXPECT_EQ(Standard("t;p\n0,5;400,25\n"), "t;p\n0.5;400.25\n");
+  EXPECT_EQ(Standard("t\tp\n0,5\t400\n"), "t\tp\n0.5\t400\n");
+  EXPECT_EQ(Standard("sep=;\nt;p\n1;2\n"), "#ep=;\nt;p\n1;2\n");
   const LogTable log = ParseLog("x.csv", "\xEF\xBB\xBF\"time\";\"speed\"\r\n0,5;1,25\r\n1;2\r\n", {});
   EXPECT_EQ(log.columns(), (std::vector<std::string>{"time", "speed"}));
   EXPECT_DOUBLE_EQ(log.Number(0, 1, 0, 10), 1.25);
+}
+
+// Were words with points, and columns that no format could name.
+TEST(CsvDialectTest, CommasOfWordsStay) {
+  for (const char delimiter : {';', '\t'}) {
+    std::string text = "t|current, A|state\n0,5|1,25|cruise, fast\n1|2,5|\"hover, low\"\n";
+    std::replace(text.begin(), text.end(), '|', delimiter);
+    const LogTable log = ParseLog("x.csv", text, {});
+    EXPECT_EQ(log.columns(), (std::vector<std::string>{"t", "current, A", "state"}));
+    EXPECT_EQ(log.Number(0, 1, 0, 10), 1.25);
+    EXPECT_EQ(log.Cell(0, 2), "cruise, fast");
+    EXPECT_EQ(log.Cell(1, 2), "hover, low");
+  }
+}
+
+TEST(CsvDialectTest, ThousandsCommasAreRefused) {
+  const auto complaint = [](const std::string& text) { return Complaint([&] { Standard(text); }); };
+  EXPECT_EQ(complaint("t\tp\n0.5\t900\n1\t1,023\n"),
+            "x.csv:3:3: '1,023' here and '0.5' in line 2: a decimal comma and a decimal point, or thousands? "
+            "allowed: "
+            "one decimal sign in the whole table, and none for thousands");
+  EXPECT_EQ(complaint("t;p\n0;900\n1;\"1,023\"\n2;12,345,678\n"),
+            "x.csv:3:4: '1,023': every number with a comma has three digits after it: decimals or thousands? "
+            "allowed: no sign for thousands (1234), and decimal points where all have three decimals");
+  for (const char* sure : {"0,125", "1234,125", "1,5", "-0,5", "1,2345", ",125"})
+    EXPECT_EQ(complaint(fmt::format("t;p\n0;1,023\n1;{}\n", sure)), "") << sure;
 }
 
 TEST(CsvDialectTest, CommentsBlankLinesAndLineEnds) {

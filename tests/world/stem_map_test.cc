@@ -93,6 +93,19 @@ TEST_F(StemMapTest, ComplaintsNameThePlaceInTheFileAsItIs) {
             "stems.csv:2:1: a quotation mark is not closed; cells over several lines are not read");
 }
 
+// Places of 1,023 m became 1.023 m, beside others of 900 m.
+TEST_F(StemMapTest, ThousandsCommasAreRefused) {
+  const std::string header = "x_m\ty_m\tdbh_cm\theight_m\tcrown_depth_m\tcrown_radius_m\n";
+  EXPECT_EQ(
+      Message(header + "900\t7\t20\t15\t8\t2\n1,023\t57\t30\t21.5\t9\t2.5\n"),
+      "stems.csv:3:1: '1,023' here and '21.5' in line 3: a decimal comma and a decimal point, or thousands? "
+      "allowed: one decimal sign in the whole table, and none for thousands");
+  EXPECT_EQ(
+      Message(header + "900\t7\t20\t15\t8\t2\n1,023\t57\t30\t21\t9\t2\n"),
+      "stems.csv:3:1: '1,023': every number with a comma has three digits after it: decimals or thousands? "
+      "allowed: no sign for thousands (1234), and decimal points where all have three decimals");
+}
+
 TEST_F(StemMapTest, ColumnsByOtherNamesAndInOtherUnits) {
   spec.columns = {{"x_m", "E"}, {"y_m", "N"}, {"dbh_mm", "DBH"}, {"height_ft", "HT"}};
   spec.columns["crown_base_m"] = "CBH";
