@@ -155,6 +155,12 @@ std::vector<Tree> Tile(const StemMapSpec& spec, const Eigen::Vector3d& size_m, c
       trees.push_back(tree);
     }
   }
+  if (trees.empty() && notes != nullptr)
+    notes->push_back(
+        fmt::format("stem map: none of its {} trees stands in this world (the stand's part of {:.0f} x "
+                    "{:.0f} m, laid over {:.0f} x "
+                    "{:.0f} m; clearings, slope_max, min_height_m, keep)",
+                    map.stems.size(), map.size_m.x(), map.size_m.y(), size_m.x(), size_m.y()));
   return trees;
 }
 

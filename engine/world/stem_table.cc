@@ -79,14 +79,24 @@ std::string NamesOf(StemQuantity quantity) {
   return names;
 }
 
+std::optional<double> ParsedNumber(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+// Nothing was measured, or a place of a local system.
+bool IsMarkOrPlace(std::string_view text) {
+  const std::optional<double> value = ParsedNumber(text);
+  return value == -999 || value == -99;
+}
+
 // What tables have where nothing was measured.
 bool IsMissing(std::string_view text) {
   constexpr std::array<std::string_view, 9> kWords = {"", "na", "nan", "n/a", "null", "none", "-", ".", "?"};
   if (std::find(kWords.begin(), kWords.end(), LowerCase(text)) != kWords.end()) return true;
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() &&
-         (value == -9999 || value == -999 || value == -99);
+  return ParsedNumber(text) == -9999 || IsMarkOrPlace(text);
 }
 
 constexpr const char* kEstimate = "'estimate_missing: conifers' (or deciduous, mixed, tropical)";
@@ -104,6 +114,25 @@ StemTable::StemTable(const StemMapSpec& spec, DelimitedText file)
     if (where_[column.quantity].column == nullptr) FindByName(column);
   for (int q = 0; q < kStemQuantities; ++q)
     if (where_[q].column == nullptr) CheckAbsence(static_cast<StemQuantity>(q));
+  CheckOneMeaning();
+  for (const StemQuantity quantity : {kX, kY}) negative_places_[quantity] = HasNegativePlaces(quantity);
+}
+
+void StemTable::CheckOneMeaning() const {
+  for (int q = 0; q < kStemQuantities; ++q)
+    for (int other = 0; other < q; ++other)
+      if (where_[q].column != nullptr && where_[other].column != nullptr &&
+          where_[q].index == where_[other].index)
+        FailAt(spec_.columns_place,
+               fmt::format("forest.stem_map.columns: '{}' is both {} and {}; allowed: one meaning a column",
+                           Header(static_cast<StemQuantity>(q)), kMeanings[other].what, kMeanings[q].what));
+}
+
+bool StemTable::HasNegativePlaces(StemQuantity quantity) const {
+  for (std::size_t row = 0; row < table_.rows(); ++row)
+    if (const std::string_view text = table_.Cell(row, where_[quantity].index); !IsMissing(text))
+      if (const std::optional<double> value = ParsedNumber(text); value && *value < 0.0) return true;
+  return false;
 }
 
 void StemTable::FindMapped(const std::string& name, const std::string& header) {
@@ -178,9 +207,9 @@ std::optional<double> StemTable::Number(std::size_t row, StemQuantity quantity, 
   if (where.column == nullptr) return std::nullopt;
   const Meaning& meaning = kMeanings[quantity];
   std::string text(table_.Cell(row, where.index));
-  // A place may be -99 m or -999 m of a local system.
-  const bool perhaps_a_place = quantity <= kY && (text == "-99" || text == "-999");
-  if (IsMissing(text) && !perhaps_a_place) {
+  // A place may be -99 m or -999 m of a local system, where others are negative too.
+  const bool a_place = quantity <= kY && negative_places_[quantity] && IsMarkOrPlace(text);
+  if (IsMissing(text) && !a_place) {
     if (meaning.optional && spec_.estimate_missing) return std::nullopt;
     throw UserError(
         fmt::format("{}'{}' is missing; measure it or leave the tree out{}", table_.Where(row, where.index),

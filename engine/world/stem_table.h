@@ -57,6 +57,8 @@ class StemTable {
   void FindMapped(const std::string& name, const std::string& header);
   void FindByName(const StemColumn& column);
   void CheckAbsence(StemQuantity quantity) const;
+  void CheckOneMeaning() const;
+  bool HasNegativePlaces(StemQuantity quantity) const;
   std::string HeaderAmong(std::string_view words) const;
   double FirstNumber(const std::string& header) const;
   std::optional<double> Number(std::size_t row, StemQuantity quantity, double max_m) const;
@@ -64,6 +66,7 @@ class StemTable {
   const StemMapSpec& spec_;
   CsvTable table_;
   std::array<Where, kStemQuantities> where_{};
+  std::array<bool, 2> negative_places_{};  // of kX and kY, marks apart
 };
 
 }  // namespace ed3r::world

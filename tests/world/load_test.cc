@@ -199,5 +199,20 @@ TEST(StemMapWorld, TilesTheStandAndMirrorsEveryOtherTile) {
   for (const Tree& tree : scene->Trees()) EXPECT_GE(tree.height_m, 10.0);
 }
 
+// A tree far from the others makes a stand that the world takes an empty corner of.
+TEST(StemMapWorld, AForestWithoutATreeIsSaid) {
+  const TestFolder folder;
+  folder.Write("stems.csv",
+               "x_m,y_m,dbh_cm,height_m,crown_depth_m,crown_radius_m\n"
+               "0,0,20,30,10,1\n2000,1500,80,40,20,2\n2010,1520,20,20,8,2\n");
+  folder.WriteGrid("flat.asc", 11, 9, 10.0, [](int, int) { return 7.0; });
+  const auto scene = Scene::Load(
+      folder.Write("w.yaml", GridWorld("    file: flat.asc\n") + "forest:\n  stem_map: {file: stems.csv}\n"));
+  EXPECT_TRUE(scene->Trees().empty());
+  EXPECT_EQ(scene->Notes(), std::vector<std::string>{"stem map: none of its 2 trees stands in this world "
+                                                     "(the stand's part of 2010 x 1520 m, laid over 100 x "
+                                                     "80 m; clearings, slope_max, min_height_m, keep)"});
+}
+
 }  // namespace
 }  // namespace ed3r::world

@@ -106,6 +106,23 @@ TEST_F(StemMapTest, ThousandsCommasAreRefused) {
       "allowed: no sign for thousands (1234), and decimal points where all have three decimals");
 }
 
+// One such row, and the stand was a kilometre wide.
+TEST_F(StemMapTest, AMissingPlaceIsNoPlace) {
+  for (const char* mark : {"-99", "-999", "-999.0", "-9999"})
+    EXPECT_EQ(Message(kHeader + kRows + mark + ",9,20,15,8,2\n"),
+              fmt::format("stems.csv:4:1: x_m: '{}' is missing; measure it or leave the tree out", mark));
+  EXPECT_EQ(Read(kHeader + kRows + "-99,9,20,15,8,2\n-12,9,20,15,8,2\n").size_m, Eigen::Vector2d(162, 50));
+}
+
+TEST_F(StemMapTest, AColumnHasOneMeaning) {
+  spec.columns = {{"x_m", "y_m"}};
+  spec.columns_place = "w.yaml:7:5";
+  EXPECT_EQ(Message(kHeader + kRows),
+            "w.yaml:7:5: forest.stem_map.columns: 'y_m' is both the position east and the position north; "
+            "allowed: one "
+            "meaning a column");
+}
+
 TEST_F(StemMapTest, ColumnsByOtherNamesAndInOtherUnits) {
   spec.columns = {{"x_m", "E"}, {"y_m", "N"}, {"dbh_mm", "DBH"}, {"height_ft", "HT"}};
   spec.columns["crown_base_m"] = "CBH";
