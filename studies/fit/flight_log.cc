@@ -314,6 +314,25 @@ void CheckPowerInFlight(const std::vector<flight_logs::LogTable>& tables, const 
                               power ? " W" : fmt::format(" A at {:.3g} W", first->power_w)));
 }
 
+// A misspelt word puts its rows on the ground; a word of another log's states does nothing.
+void NoteUnseenWords(const std::vector<flight_logs::LogTable>& tables, FlightLog& log) {
+  for (const auto& [name, condition] : log.format.in_flight) {
+    if (condition.words.empty()) continue;
+    std::set<std::string> seen;
+    for (const flight_logs::LogTable& table : tables)
+      for (std::size_t row = 0, column = table.Column(name, "in_flight"); row < table.rows(); ++row)
+        if (const std::string cell = table.Cell(row, column); IsUtf8(cell)) seen.insert(Lower(cell));
+    constexpr std::size_t kMostShown = 10;
+    std::vector<std::string> shown(seen.begin(), seen.end());
+    const bool more = shown.size() > kMostShown;
+    if (more) shown.resize(kMostShown);
+    for (const std::string& word : condition.words)
+      if (!seen.contains(Lower(word)))
+        log.notes.push_back(fmt::format("in_flight: no row has '{}' in '{}'; there are: {}{}", word, name,
+                                        fmt::join(shown, ", "), more ? ", ..." : ""));
+  }
+}
+
 // No row in the air: says what in_flight asks for and what the first row has instead.
 [[noreturn]] void FailOnGround(const flight_logs::LogTable& table, const FlightLog& log) {
   std::string conditions;
@@ -391,6 +410,7 @@ FlightLog MakeFlightLog(const std::vector<flight_logs::LogTable>& tables, const 
   CheckPowerInFlight(tables, log);
   CheckEnough(tables, log, use);
   NoteDeadSpeed(log);
+  NoteUnseenWords(tables, log);
   log.climb_drift_m = drift_m / static_cast<double>(log.flights.size());
   return log;
 }

@@ -145,11 +145,13 @@ class FormatReader {
     if (word == "columns") {
       for (const Entry& column : Entries(entry)) {
         CheckKnown(column, kMeanings);
+        CheckOneMeaning(column);
         format_.columns[column.key] = Text(column.key, column.value);
       }
     } else if (word == "units") {
       for (const Entry& factor : Entries(entry)) {
         CheckKnown(factor, kMeanings);
+        unit_places_[factor.key] = factor.at;
         format_.units[factor.key] = Number(factor, -1e9, 1e9);
         if (format_.units[factor.key] == 0.0)
           FailAt(factor.value.at, "units: a factor of 0 loses the column");
@@ -173,6 +175,13 @@ class FormatReader {
     } else {
       ReadNotes(entry);
     }
+  }
+
+  void CheckOneMeaning(const Entry& column) const {
+    for (const auto& [meaning, name] : format_.columns)
+      if (name == column.value.text)
+        FailAt(column.value.at, fmt::format("columns: '{}' is both {} and {}; allowed: one meaning a column",
+                                            name, meaning, column.key));
   }
 
   // A number is a least value; a text, or a list of texts, are words.
@@ -218,6 +227,10 @@ class FormatReader {
   }
 
   void CheckColumns() const {
+    for (const auto& [meaning, place] : unit_places_)
+      if (!format_.Has(meaning))
+        FailAt(place,
+               fmt::format("units: {} has no column; name it in columns, or leave its unit out", meaning));
     const auto need = [this](bool there, const char* what) {
       if (!there) FailAt(root_.at, fmt::format("columns: {}", what));
     };
@@ -235,6 +248,7 @@ class FormatReader {
 
   YamlNode root_;
   LogFormat format_;
+  std::map<std::string, std::string> unit_places_;
 };
 
 }  // namespace

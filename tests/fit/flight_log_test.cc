@@ -166,6 +166,11 @@ TEST(LogFormatTest, NamesTheMistake) {
   EXPECT_EQ(complaint("robot: {mass_kg: 900}"),
             "f.yaml:1:18: robot.mass_kg: '900' is not allowed; allowed: 0.05 .. 50 kg");
   EXPECT_EQ(complaint("units: {climb_mps: 0}"), "f.yaml:1:20: units: a factor of 0 loses the column");
+  EXPECT_EQ(complaint("columns: {voltage_v: u, current_a: u}"),
+            "f.yaml:1:36: columns: 'u' is both voltage_v and current_a; allowed: one meaning a column");
+  EXPECT_EQ(
+      complaint("columns: {time_s: t, power_w: p, airspeed_mps: v, climb_mps: w}\nunits: {altitude_m: 0.1}"),
+      "f.yaml:2:9: units: altitude_m has no column; name it in columns, or leave its unit out");
   EXPECT_EQ(flight_logs::Complaint([] { LoadLogFormat("m10"); }),
             "--format: 'm10' is neither a file nor a built-in format (m100, ardupilot, px4, dji); did you "
             "mean m100?");

@@ -269,6 +269,14 @@ TEST_F(RefusalsTest, RowsInFlightAreToldByWords) {
   EXPECT_EQ(Fit(LogText(), FormatText({}, "in_flight: {state: In Air}\n")).log.rows_on_ground, 30);
 }
 
+// Its rows were ground without a word.
+TEST_F(RefusalsTest, AWordThatNoRowHasIsSaid) {
+  const FitReport report = Fit(LogText(), FormatText({}, "in_flight: {state: [In air, Landign]}\n"));
+  EXPECT_NE(std::find(report.log.notes.begin(), report.log.notes.end(),
+                      "in_flight: no row has 'Landign' in 'state'; there are: in air, landed"),
+            report.log.notes.end());
+}
+
 // Armed and waiting for the first minute: 120 of 600 rows.
 void Idles(Row& row) {
   if (row.index >= 120) return;
