@@ -109,6 +109,21 @@ void RasterFile::CheckTransform() {
   columns_ = dataset_->GetRasterXSize();
   rows_ = dataset_->GetRasterYSize();
   in_order_ = dataset_->GetDriver() != nullptr && EQUAL(dataset_->GetDriver()->GetDescription(), "AAIGrid");
+  if (!in_order_) CheckWorldFiles();
+}
+
+// GDAL takes the cells that the file tells itself, and says nothing of others beside it.
+void RasterFile::CheckWorldFiles() const {
+  constexpr double kRounded = 1e-4;
+  const auto differ = [](double a, double b) { return std::abs(std::abs(a) - b) > kRounded * b; };
+  for (const char* ending : {"tfw", "tifw", "wld"}) {
+    std::array<double, 6> beside;
+    if (!GDALReadWorldFile(file_.c_str(), ending, beside.data())) continue;
+    if (differ(beside[1], cell_x_m_) || differ(beside[5], cell_y_m_))
+      Fail(fmt::format(
+          "its cells are {:g} x {:g}, and {:g} x {:g} by the .{} beside it; correct it, or take it away",
+          cell_x_m_, cell_y_m_, std::abs(beside[1]), std::abs(beside[5]), ending));
+  }
 }
 
 void RasterFile::CheckText() const {

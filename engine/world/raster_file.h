@@ -53,6 +53,7 @@ class RasterFile {
   void CheckComplaints() const;
   void CheckBands();
   void CheckTransform();
+  void CheckWorldFiles() const;
   void CheckBlocks() const;
   void CheckText() const;
   void ReadCoding();

@@ -74,15 +74,32 @@ class Reference {
     if (prj_file_.empty()) return;
     const std::string text = ReadFile(prj_file_, kMaxPrjBytes);
     ReadOldPrj(text);
+    ReadVertical(text);
     if (!system_.IsEmpty()) return;
     char** lines = CSLTokenizeString2(text.c_str(), "\n", 0);
     const OGRErr error = system_.importFromESRI(lines);
     CSLDestroy(lines);
-    if (error != OGRERR_NONE || system_.IsEmpty())
-      Fail(fmt::format(
-          "beside it stands {}, which is not understood; allowed: a coordinate system as ESRI writes it",
-          std::filesystem::path(prj_file_).filename().string()));
+    if (error != OGRERR_NONE || system_.IsEmpty()) FailPrj();
     system_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  }
+
+  [[noreturn]] void FailPrj() const {
+    Fail(fmt::format(
+        "beside it stands {}, which is not understood; allowed: a coordinate system as ESRI writes it",
+        std::filesystem::path(prj_file_).filename().string()));
+  }
+
+  // GDAL passes over a second system in a row of its own, and over all where the file has one itself.
+  void ReadVertical(const std::string& text) {
+    const std::size_t begin = text.find("VERTCS[");
+    if (begin == std::string::npos || begin == 0) return;
+    std::string row =
+        text.substr(0, text.find_last_not_of(" \t\r\n,", begin - 1) + 1) + "," + text.substr(begin);
+    std::erase_if(row, [](char c) { return c == '\r' || c == '\n'; });
+    char* lines[] = {row.data(), nullptr};
+    OGRSpatialReference both;
+    if (both.importFromESRI(lines) != OGRERR_NONE || !both.IsCompound()) FailPrj();
+    prj_height_ = VerticalUnit(both);
   }
 
   // Before WKT: "Zunits FEET", a line of its own.
@@ -168,7 +185,7 @@ class Reference {
       if (unit) told = unit;
     };
     hear(dataset_.GetRasterBand(1)->GetUnitType());
-    hear(VerticalUnit());
+    hear(VerticalUnit(system_));
     hear(UnitOfKey(keys_, kVerticalUnitsKey));
     hear(prj_height_);
     CheckSame(told, spec_.height_unit, "heights", "height_unit");
@@ -201,13 +218,13 @@ class Reference {
   }
 
   // Of a compound coordinate system, or "".
-  std::string VerticalUnit() const {
-    if (!system_.IsCompound()) return "";
+  std::string VerticalUnit(const OGRSpatialReference& system) const {
+    if (!system.IsCompound()) return "";
     OGRAxisOrientation direction = OAO_Up;
-    system_.GetAxis("COMPD_CS|VERT_CS", 0, &direction);
+    system.GetAxis("COMPD_CS|VERT_CS", 0, &direction);
     if (direction == OAO_Down) Fail("its heights are depths, down from the surface; allowed: heights");
     const char* name = nullptr;
-    const double metres = system_.GetTargetLinearUnits("COMPD_CS|VERT_CS", &name);
+    const double metres = system.GetTargetLinearUnits("COMPD_CS|VERT_CS", &name);
     const std::optional<LengthUnit> unit = FindLengthUnit(metres);
     return unit ? std::string(unit->name) : name == nullptr ? "" : name;
   }

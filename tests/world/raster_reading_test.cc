@@ -212,6 +212,15 @@ TEST_F(RasterReadingTest, TheUnitOfHeightsBesideAVerticalSystemCounts) {
             "VerticalUnits, .prj); correct the one that is wrong");
 }
 
+TEST_F(RasterReadingTest, AWorldFileMustHaveTheCellsOfTheRaster) {
+  WriteRaster(folder.Path("g.tif"), Slope());
+  folder.Write("g.tfw", "10\n0\n0\n-10\n500005\n4000085\n");
+  EXPECT_EQ(Height(), "44.00");
+  folder.Write("g.tfw", "30\n0\n0\n-30\n500015\n4000255\n");
+  EXPECT_EQ(Height(),
+            "'g.tif': its cells are 10 x 10, and 30 x 30 by the .tfw beside it; correct it, or take it away");
+}
+
 TEST_F(RasterReadingTest, HeightsOfEightBitsMayHaveASign) {
   TestRaster raster = Slope();
   raster.type = GDT_Byte;

@@ -382,6 +382,15 @@ TEST_F(TextGridTest, ItsPrjTellsTheUnitOfHeights) {
   ExpectSlope(*Load(kGrid), 30.0 * kSurveyFootM, kSurveyFootM);
 }
 
+TEST_F(TextGridTest, ItsPrjTellsTheUnitOfHeightsInARowOfItsOwn) {
+  WritePrj("EPSG:32618");
+  std::ofstream(folder.Path("g.prj"), std::ios::app)
+      << "\r\nVERTCS[\"NAVD_1988_Foot_US\",VDATUM[\"North_American_Vertical_Datum_1988\"],PARAMETER["
+         "\"Vertical_Shift\","
+         "0.0],PARAMETER[\"Direction\",1.0],UNIT[\"Foot_US\",0.3048006096012192]]\r\n";
+  ExpectSlope(*Load(kGrid), 30.0, kSurveyFootM);
+}
+
 TEST_F(TextGridTest, AnOldPrjTellsTheUnits) {
   folder.Write(
       "g.prj",
