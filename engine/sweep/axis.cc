@@ -187,7 +187,10 @@ void CheckAxesDiffer(const std::vector<Axis>& axes) {
   for (const Axis& axis : axes) {
     std::map<std::string, std::string> keys;
     for (const AxisPoint& point : axis.points)
-      for (const Setting& setting : point.settings) keys.emplace(setting.key, setting.at);
+      for (const Setting& setting : point.settings) {
+        keys.emplace(setting.key, setting.at);
+        if (!setting.airframe_at.empty()) keys.emplace(kAirframeKey, setting.airframe_at);
+      }
     for (const auto& [key, at] : keys) {
       const auto [first, is_new] = owners.emplace(key, at);
       if (!is_new) FailAt(at, fmt::format("{}: is on another axis, too, at {}", key, first->second));

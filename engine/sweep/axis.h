@@ -40,7 +40,7 @@ std::vector<std::string> RangeValues(const YamlNode& range, const std::string& k
 // The first setting of a key on any of the axes, or null.
 const Setting* FindOnAxes(const std::vector<Axis>& axes, std::string_view key);
 
-// Refuses axes that set the same parameter: one would overwrite the other.
+// Refuses axes that set the same parameter, or both name airframe files: one would overwrite the other.
 void CheckAxesDiffer(const std::vector<Axis>& axes);
 
 }  // namespace ed3r::sweep

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -70,11 +71,15 @@ class StageExpander {
               const std::string& top_folder) {
     CheckOffAxes(written, overriding);
     fixed_ = MergedSettings(written, overriding);
-    Arm common;
-    common.files["mission.world"] = common.config.mission.world;
-    common.config.mission.world = DefaultWorld(top_folder, common.config.mission.world);
-    for (const Setting& setting : fixed_) Apply(setting, common);
-    for (std::int64_t index = 0; index < Size(); ++index) AddCombination(index, common);
+    const Arm common = ArmWith(fixed_, top_folder);
+    const Arm without_airframe = ArmWith(WithoutAirframe(fixed_), top_folder);
+    for (std::int64_t index = 0; index < Size(); ++index) {
+      const std::vector<const AxisPoint*> points = PointsAt(index);
+      const bool own_airframe = std::any_of(points.begin(), points.end(), [](const AxisPoint* point) {
+        return NameAnAirframe(point->settings);
+      });
+      AddCombination(points, own_airframe ? without_airframe : common);
+    }
     if (stage_.arms.empty())
       FailAt(where_.front().At(),
              fmt::format("where: none of the {} combinations of stage '{}' is kept; allowed: at least one",
@@ -103,7 +108,7 @@ class StageExpander {
     for (const Axis& axis : axes_)
       for (const AxisPoint& point : axis.points)
         for (const Setting& setting : point.settings)
-          if (setting.key == forced.key && !setting.airframe_at.empty())
+          if (!setting.airframe_at.empty())
             FailAt(forced.airframe_at,
                    fmt::format("robot: is not allowed here: the sweep varies it, at {}; write the file there",
                                setting.airframe_at));
@@ -120,8 +125,15 @@ class StageExpander {
     return points;
   }
 
-  void AddCombination(std::int64_t index, const Arm& common) {
-    const std::vector<const AxisPoint*> points = PointsAt(index);
+  static Arm ArmWith(const std::vector<Setting>& settings, const std::string& top_folder) {
+    Arm arm;
+    arm.files["mission.world"] = arm.config.mission.world;
+    arm.config.mission.world = DefaultWorld(top_folder, arm.config.mission.world);
+    for (const Setting& setting : settings) Apply(setting, arm);
+    return arm;
+  }
+
+  void AddCombination(const std::vector<const AxisPoint*>& points, const Arm& common) {
     Arm arm = common;
     for (const AxisPoint* point : points) {
       for (const Setting& setting : point->settings) {

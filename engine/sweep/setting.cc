@@ -85,6 +85,16 @@ void SettingReader::ResolveFile(Setting& setting) const {
   }
 }
 
+bool NameAnAirframe(const std::vector<Setting>& settings) {
+  return std::any_of(settings.begin(), settings.end(),
+                     [](const Setting& setting) { return !setting.airframe_at.empty(); });
+}
+
+std::vector<Setting> WithoutAirframe(std::vector<Setting> settings) {
+  std::erase_if(settings, [](const Setting& setting) { return !setting.airframe_at.empty(); });
+  return settings;
+}
+
 std::vector<Setting> ReadAirframeFile(const std::string& path, const std::string& at) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error))
@@ -93,6 +103,8 @@ std::vector<Setting> ReadAirframeFile(const std::string& path, const std::string
                        path));
   std::vector<Setting> settings = SettingReader(FolderOf(path), FolderOf(path), false, {})
                                       .ReadMap(ReadYamlFile(path).root, "an airframe file");
+  if (settings.empty())
+    FailAt(at, fmt::format("robot: '{}' sets nothing; allowed: an airframe file with a key at least", path));
   for (Setting& setting : settings) {
     setting.is_default = true;
     setting.airframe_at = at;

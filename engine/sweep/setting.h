@@ -44,6 +44,12 @@ std::string PathFrom(const std::string& folder, const std::string& written);
 bool NamesAFile(std::string_view key);
 std::string_view FileNotNeeded(std::string_view key);
 
+// Whether an airframe file brought any of them.
+bool NameAnAirframe(const std::vector<Setting>& settings);
+
+// Without those that an airframe file brought: another airframe file replaces it whole.
+std::vector<Setting> WithoutAirframe(std::vector<Setting> settings);
+
 // The parameters of an airframe file, which 'robot: FILE' includes: a YAML map of robot.*, energy.*, environment.* and
 // cpu.* keys, as `ed3r fit` writes it. Positions are those in that file.
 std::vector<Setting> ReadAirframeFile(const std::string& path, const std::string& at);

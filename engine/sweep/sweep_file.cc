@@ -21,6 +21,8 @@ std::vector<Setting> ReadOverrides(const std::vector<std::string>& written, cons
     if (equals == std::string::npos) FailAt(at, "is not allowed; allowed: KEY=VALUE");
     if (text.substr(0, equals) == kAirframeKey) {
       // An airframe file; a later or earlier --set of one of its keys is a duplicate like any other.
+      const auto [first, is_new] = places.emplace(kAirframeKey, at);
+      if (!is_new) FailAt(at, fmt::format("robot: is set twice, first by {}", first->second));
       for (Setting& setting : ReadAirframeFile(text.substr(equals + 1), at)) {
         if (!places.emplace(setting.key, at).second) FailAt(at, fmt::format("{}: is set twice", setting.key));
         settings.push_back(std::move(setting));

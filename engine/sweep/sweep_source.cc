@@ -121,6 +121,12 @@ StageSource ReadStage(const YamlNode& node, const std::vector<std::string>& earl
   return stage;
 }
 
+const std::string& AirframeAt(const std::vector<Setting>& settings) {
+  return std::find_if(settings.begin(), settings.end(),
+                      [](const Setting& setting) { return !setting.airframe_at.empty(); })
+      ->airframe_at;
+}
+
 // What a file on top says for all stages and every stage of its base says otherwise would be lost.
 void CheckReachesAStage(const SweepSource& source, const std::vector<StageSource>& stages) {
   const auto lost = [&](const auto& says) {
@@ -144,6 +150,9 @@ void CheckReachesAStage(const SweepSource& source, const std::vector<StageSource
                              [&](const Setting& own) { return own.key == setting.key; });
         }))
       refuse(setting.at, setting.key, fmt::format("--set {}={}", setting.key, setting.canonical));
+  if (NameAnAirframe(source.top.set) &&
+      lost([](const StageSource& stage) { return NameAnAirframe(stage.section.set); }))
+    refuse(AirframeAt(source.top.set), "robot", "--set robot=FILE");
   if (source.top.missions &&
       lost([](const StageSource& stage) { return stage.section.missions.has_value(); }))
     refuse(source.top.missions->at, "missions", "--missions");
@@ -244,7 +253,7 @@ SweepSource ReadSweepSource(const std::string& file, const ValueCheck& check) {
 
 std::vector<Setting> MergedSettings(const std::vector<Setting>& under, const std::vector<Setting>& over) {
   std::vector<Setting> merged;
-  for (const Setting& setting : under) {
+  for (const Setting& setting : NameAnAirframe(over) ? WithoutAirframe(under) : under) {
     const bool replaced =
         std::any_of(over.begin(), over.end(), [&](const Setting& s) { return s.key == setting.key; });
     if (!replaced) merged.push_back(setting);

@@ -58,7 +58,8 @@ struct SweepSource {
 // Throws UserError.
 SweepSource ReadSweepSource(const std::string& file, const ValueCheck& check);
 
-// Settings of `under` that `over` does not set, then those of `over`.
+// Settings of `under` that `over` does not set, then those of `over`. An airframe file of `over` replaces one of `under`
+// with all that it brought.
 std::vector<Setting> MergedSettings(const std::vector<Setting>& under, const std::vector<Setting>& over);
 
 // The settings, those whose keys are on the axes as defaults that these vary.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "engine/config/parameters.h"
 #include "tests/sweep/scratch.h"
 
 namespace ed3r::sweep {
@@ -95,6 +96,73 @@ TEST(OverridesTest, AnAirframeFileMayNotStandInForThoseOfPoints) {
     EXPECT_EQ(error.what(), "--set " + set + ": robot: is not allowed here: the sweep varies it, at " +
                                 study + ":4:67; write the file there");
   }
+}
+
+// What the second file does not name is the default again, wherever the two meet.
+TEST(OverridesTest, AnAirframeFileReplacesAnEarlierOneWhole) {
+  const ScratchFolder scratch;
+  scratch.Write("a.yaml", "robot: {mass_kg: 3, width_m: 0.6}\nenergy: {model: momentum}\n");
+  const std::string b = scratch.Write("b.yaml", "robot: {height_m: 0.2}\n");
+  const std::string alone = scratch.Write("alone.yaml", "name: x\nmissions: 1\nset: {robot: b.yaml}\n");
+  const std::string with_a =
+      scratch.Write("with_a.yaml", "name: x\nmissions: 1\nset: {robot: a.yaml, robot.speed_mps: 2}\n");
+  scratch.Write("bare.yaml", "name: x\nmissions: 1\n");
+  const auto expect_b = [](const SweepPlan& plan) {
+    const Config& config = plan.stages.back().arms.back().config;
+    EXPECT_EQ(config.robot.height_m, 0.2);
+    EXPECT_EQ(config.robot.mass_kg, Config().robot.mass_kg);
+    EXPECT_EQ(config.robot.width_m, Config().robot.width_m);
+    EXPECT_EQ(GetParameter(config, "energy.model"), GetParameter(Config(), "energy.model"));
+    EXPECT_EQ(config.robot.speed_mps, 2.0);  // written as a setting
+  };
+  expect_b(LoadSweep(with_a, Set({"robot=" + b})));
+  expect_b(LoadSweep(scratch.Write("c.yaml", "name: x\nbase: with_a.yaml\nset: {robot: b.yaml}\n"), {}));
+  expect_b(LoadSweep(
+      scratch.Write("d.yaml", "name: x\nbase: with_a.yaml\nstages: [{name: s, set: {robot: b.yaml}}]\n"),
+      {}));
+  const SweepPlan points = LoadSweep(
+      scratch.Write(
+          "e.yaml",
+          "name: x\nbase: with_a.yaml\nsweep: {list: [{name: own}, {name: mine, robot: b.yaml}]}\n"),
+      {});
+  EXPECT_EQ(points.stages[0].arms[0].config.robot.mass_kg, 3.0);
+  expect_b(points);
+}
+
+TEST(OverridesTest, TwoAirframeFilesOfOneLevelAreRefused) {
+  const ScratchFolder scratch;
+  const std::string a = scratch.Write("a.yaml", "robot: {mass_kg: 3}\n");
+  const std::string b = scratch.Write("b.yaml", "robot: {height_m: 0.2}\n");
+  const std::string none = scratch.Write("none.yaml", "{}\n");
+  const auto refusal = [&](const std::string& text, const SweepOverrides& overrides) {
+    try {
+      LoadSweep(scratch.Write("x.yaml", text), overrides);
+    } catch (const UserError& error) {
+      std::string message = error.what();
+      const std::string folder = scratch.Path() + "/";
+      for (std::size_t at; (at = message.find(folder)) != std::string::npos;)
+        message.erase(at, folder.size());
+      return message;
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refusal("name: x\nmissions: 1\n", Set({"robot=" + a, "robot=" + b})),
+            "--set robot=b.yaml: robot: is set twice, first by --set robot=a.yaml");
+  EXPECT_EQ(refusal("name: x\nmissions: 1\n", Set({"robot=" + none})),
+            "--set robot=none.yaml: robot: 'none.yaml' sets nothing; allowed: an airframe file with a key at "
+            "least");
+  EXPECT_EQ(refusal("name: x\nmissions: 1\nsweep: {list: [{name: p}, {name: q, robot: a.yaml}]}\n",
+                    Set({"robot=" + b})),
+            "--set robot=b.yaml: robot: is not allowed here: the sweep varies it, at x.yaml:3:44; write the "
+            "file there");
+  EXPECT_EQ(refusal("name: x\nmissions: 1\nsweep: {list: [{name: q, robot: a.yaml}]}\n"
+                    "stages: [{name: s, sweep: {list: [{name: r, robot: b.yaml}]}}]\n",
+                    {}),
+            "x.yaml:4:52: robot: is on another axis, too, at x.yaml:3:33");
+  scratch.Write("base.yaml", "name: x\nmissions: 1\nstages: [{name: s, set: {robot: a.yaml}}]\n");
+  EXPECT_EQ(refusal("name: x\nbase: base.yaml\nset: {robot: b.yaml}\n", {}),
+            "x.yaml:3:14: robot: has no effect: every stage of the base file says its own, at base.yaml:3:10 "
+            "first; write the stages anew, or give --set robot=FILE");
 }
 
 TEST(OverridesTest, LaterLayersCheckWhatTheyKnow) {
