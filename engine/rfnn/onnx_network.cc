@@ -6,16 +6,19 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/core/message.h"
 #include "engine/core/sha256.h"
 
 namespace ed3r::rfnn {
 namespace {
 
 constexpr char kScalingKey[] = "ed3r.scaling";
+constexpr char kFeaturesKey[] = "ed3r.features";
 constexpr std::uintmax_t kMostBytes = 256U << 20;
 constexpr std::int64_t kMostNeurons = 65536;
 
@@ -25,6 +28,10 @@ struct Layer {
   std::vector<float> weights, biases;
   bool has_bias = false, has_relu = false;
 };
+
+std::string FeatureNames(std::span<const std::string_view> features) {
+  return fmt::format("{}", fmt::join(features, " "));
+}
 
 // Walks the chain of nodes from the input to the output.
 class Chain {
@@ -294,6 +301,15 @@ std::optional<Scaling> KeptScaling(const OnnxGraph& graph, const Scaling& seen, 
   return kept;
 }
 
+// A network learnt nothing of inputs other than those that its file names, nor of these in another order.
+void CheckFeatures(const OnnxGraph& graph, const std::string& expected, const std::string& name) {
+  const auto found = graph.metadata.find(kFeaturesKey);
+  if (found == graph.metadata.end() || found->second == expected) return;
+  throw UserError(
+      OneLine(fmt::format("{}: its metadata '{}' are '{}'; allowed: '{}', or none where they are wrong", name,
+                          kFeaturesKey, found->second, expected)));
+}
+
 }  // namespace
 
 std::shared_ptr<const OnnxNetwork> OnnxNetwork::Parse(std::string_view bytes, const std::string& name,
@@ -301,6 +317,7 @@ std::shared_ptr<const OnnxNetwork> OnnxNetwork::Parse(std::string_view bytes, co
   const OnnxGraph graph = ParseOnnxGraph(bytes, name);
   Chain chain(graph, name, design);
   chain.Walk();
+  CheckFeatures(graph, FeatureNames(design.features.first(static_cast<std::size_t>(chain.width()))), name);
   std::shared_ptr<OnnxNetwork> network(new OnnxNetwork());
   network->hidden_ = chain.Hidden();
   const auto model_of = [&](int output, const Scaling& scaling) {
@@ -340,7 +357,7 @@ class ChainWriter {
       : value_(input) {
     graph_.inputs = {input};
     graph_.outputs = {output};
-    graph_.metadata["ed3r.features"] = fmt::format("{}", fmt::join(design.features, " "));
+    graph_.metadata[kFeaturesKey] = FeatureNames(design.features);
   }
 
   void Add(const std::string& op, const std::string& name, std::vector<std::string> operands) {

@@ -54,7 +54,8 @@ class OnnxNetwork {
 };
 
 // A network as an ONNX file of this form (opset 13). The means and deviations that the engine keeps in double precision
-// are also in the file's metadata ("ed3r.scaling"), so that Parse gives the same choices, bit for bit.
+// are also in the file's metadata ("ed3r.scaling"), so that Parse gives the same choices, bit for bit. The names of the inputs are
+// there too ("ed3r.features"): where a file has them, Parse refuses others or another order.
 std::string OnnxBytes(const Model& model);
 
 // A network of numbers from elsewhere. Layer l maps x to x weights[l] + biases[l], with a Relu between layers.

@@ -113,6 +113,19 @@ TEST(OnnxNetworkTest, WhatDoesNotFitIsRefusedByName) {
   graph = SmallGraph();
   graph.metadata["ed3r.scaling"] = "1 2 3";
   EXPECT_NE(RefusalOf(BytesOf(graph)).find("do not fit its tensors"), std::string::npos);
+  graph.metadata.clear();
+  std::string features(kRcNetwork.features[0]);
+  for (const std::string_view feature : kRcNetwork.features.subspan(1)) features.append(" ").append(feature);
+  for (const std::string& other : {features + " more", "g" + features, std::string()}) {
+    graph.metadata["ed3r.features"] = other;
+    EXPECT_EQ(RefusalOf(BytesOf(graph)), "networks.rc: mine.onnx: its metadata 'ed3r.features' are '" +
+                                             other + "'; allowed: '" + features +
+                                             "', or none where they are wrong");
+  }
+  graph.metadata["ed3r.features"] = features;
+  EXPECT_EQ(
+      OnnxNetwork::Parse(BytesOf(graph), "named", kRcNetwork)->scores()->data().scaling.target_sd,
+      OnnxNetwork::Parse(BytesOf(SmallGraph()), "unnamed", kRcNetwork)->scores()->data().scaling.target_sd);
   EXPECT_NE(RefusalOf("not a network").find("is no ONNX model"), std::string::npos);
 }
 
