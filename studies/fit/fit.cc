@@ -10,6 +10,7 @@
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
 #include "studies/fit/power_check.h"
+#include "studies/fit/repeated_flights.h"
 #include "studies/flight_logs/read_log.h"
 
 namespace ed3r::fit {
@@ -20,10 +21,18 @@ std::vector<flight_logs::LogTable> ReadTables(const std::vector<std::string>& pa
   if (paths.empty()) throw UserError("ed3r fit: no log file given");
   std::vector<flight_logs::LogTable> tables;
   for (const std::string& path : paths) tables.push_back(flight_logs::ReadLog(path, reading));
-  for (const flight_logs::LogTable& table : tables)
+  for (const flight_logs::LogTable& table : tables) {
+    const bool one_source =
+        table.kind() == flight_logs::LogKind::kCsv || table.kind() == flight_logs::LogKind::kAirData;
+    if (reading.battery && one_source)
+      throw UserError(
+          fmt::format("--battery: is not allowed for '{}', whose columns are of one battery; allowed: for "
+                      "PX4 and ArduPilot logs",
+                      table.path()));
     if (table.kind() != tables.front().kind())
       throw UserError(fmt::format("{}: another kind of log than {}; fit logs of one kind at a time",
                                   table.path(), tables.front().path()));
+  }
   return tables;
 }
 
@@ -52,9 +61,18 @@ std::string FormatOf(const flight_logs::LogTable& table) {
 }
 
 // Mass and rotors decide what every number of the fit means: no default stands in for them.
+constexpr const char* kAirframe[] = {"mass_kg", "propellers", "propeller_radius_m"};
+
+bool NamesAirframe(const FitOptions& options) {
+  return std::all_of(std::begin(kAirframe), std::end(kAirframe), [&](const std::string& key) {
+    return std::any_of(options.robot.begin(), options.robot.end(),
+                       [&](const auto& setting) { return setting.first == "robot." + key; });
+  });
+}
+
 void CheckAirframe(const LogFormat& format, const std::string& path) {
   std::vector<std::string> missing;
-  for (const std::string key : {"mass_kg", "propellers", "propeller_radius_m"})
+  for (const std::string key : kAirframe)
     if (!format.robot_keys.contains(key) && !(key == "mass_kg" && format.Has("mass_kg")))
       missing.push_back("robot." + key);
   if (missing.empty()) return;
@@ -76,6 +94,9 @@ LogFormat FormatWithSettings(const flight_logs::LogTable& table, const std::stri
     if (table.Has("air_density_kgm3")) format.columns["air_density_kgm3"] = "air_density_kgm3";
     if (!table.Has("throttle_0_1000")) format.in_flight.erase("throttle_0_1000");
   }
+  // Nor do its notes on that airframe tell of one that was named.
+  if (IsBuiltInLogFormat(name) && NamesAirframe(options))
+    std::erase_if(format.notes, [](const std::string& note) { return note.find("airframe") != note.npos; });
   Config config;
   config.robot = format.robot;
   for (const auto& [key, value] : options.robot) {
@@ -178,6 +199,7 @@ FitReport RunFit(const FitOptions& options) {
     const std::string& name = options.evaluate_format.empty() ? options.format : options.evaluate_format;
     report.evaluate_log = LoadLog(options.evaluate, name, options, LogUse::kEvaluate);
   }
+  CheckNoFlightTwice(report.log, report.evaluate_log ? &*report.evaluate_log : nullptr);
   report.segments = report.log.flights.size() < kMinGroups;
   report.groups = Groups(report.log);
   report.scaling = FitHoverScaling(report.log);

@@ -53,7 +53,7 @@ struct FitReport {
   double seconds = 0.0;  // wall time of the fit, reading included; not in the JSON's results
 };
 
-// Throws UserError for bad input: log, format, key, an airframe without mass or propellers, units that cannot be, power
+// Throws UserError for bad input: log, format, key, an airframe without mass or propellers, a flight given twice, units that cannot be, power
 // that was not measured, a log that no model explains.
 FitReport RunFit(const FitOptions& options);
 

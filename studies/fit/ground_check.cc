@@ -82,7 +82,9 @@ std::string AltitudeCondition(const std::vector<flight_logs::LogTable>& tables, 
 }  // namespace
 
 void CheckGround(const std::vector<flight_logs::LogTable>& tables, const FlightLog& log) {
-  if (!log.format.in_flight.empty() || tables.front().kind() != flight_logs::LogKind::kCsv) return;
+  if (!log.format.in_flight.empty() ||
+      std::all_of(tables.begin(), tables.end(), [](const auto& table) { return table.TellsGround(); }))
+    return;
   Ground ground{.least_w = kGroundShare * UpperQuartileW(log), .low_rows = 0, .places = {}};
   for (const Flight& flight : log.flights) {
     ground.low_rows += static_cast<std::size_t>(

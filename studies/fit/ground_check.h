@@ -16,7 +16,7 @@ inline constexpr double kGroundS = 5.0;
 // Of a log's rows; fewer are to the robust fit what drop-outs are (the Matrice 100's log has 40 of 37,082, one landing).
 inline constexpr double kLeastGroundPart = 0.01;
 
-// Of CSV logs whose format has no `in_flight`; raw logs tell the ground themselves. Throws UserError with the number of such
+// Of logs whose format has no `in_flight` and in which no autopilot tells the ground. Throws UserError with the number of such
 // rows and the line that leaves them out, unless they are few, or most rows of so little power are elsewhere: those are
 // drop-outs.
 void CheckGround(const std::vector<flight_logs::LogTable>& tables, const FlightLog& log);

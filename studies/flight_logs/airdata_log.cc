@@ -77,6 +77,7 @@ class AirDataReader {
             .kind = LogKind::kAirData,
             .columns = {},
             .on_ground = {},
+            .ground_by_height = true,
             .lines = {},
             .notes = {},
             .bad = bad};
@@ -118,6 +119,7 @@ class AirDataReader {
     for (std::size_t k = 0; k < values.size(); ++k) log_.columns[k].values.push_back(values[k]);
     const std::string state = state_ ? Lower(table_.Cell(row, *state_)) : "";
     const bool motors = state.find("motor") != std::string::npos || state.find("engine") != std::string::npos;
+    if (motors) log_.ground_by_height = false;
     log_.on_ground.push_back(motors || std::abs(values[5]) < kGroundHeightM);
     log_.lines.push_back(table_.Line(row));
     battery_.voltage_v.Add(values[0], values[1]);

@@ -35,9 +35,10 @@ struct DecodedLog {
   LogKind kind = LogKind::kCsv;
   std::vector<DecodedColumn> columns;  // the first is time_s, increasing
   std::vector<bool> on_ground;         // per row; empty where the log does not tell
-  std::vector<int> lines;              // per row, where the file has lines
-  std::vector<std::string> notes;      // for the report: clock, sources, what was left out
-  int bad = 0;                         // rows or messages left out as unreadable (LogReading::skip_bad)
+  bool ground_by_height = false;   // on_ground is a guess by the height alone, no state of the autopilot's
+  std::vector<int> lines;          // per row, where the file has lines
+  std::vector<std::string> notes;  // for the report: clock, sources, what was left out
+  int bad = 0;                     // rows or messages left out as unreadable (LogReading::skip_bad)
 };
 
 // Immutable once made; share it between threads freely.
@@ -55,6 +56,8 @@ class LogTable {
   const std::vector<std::string>& columns() const { return csv_ ? csv_->columns() : names_; }
   const std::vector<std::string>& notes() const { return log_.notes; }
   int bad() const { return csv_ ? bad_ : log_.bad; }
+  // Whether the autopilot said which rows are on the ground.
+  bool TellsGround() const { return !log_.on_ground.empty() && !log_.ground_by_height; }
   bool OnGround(std::size_t row) const { return !log_.on_ground.empty() && log_.on_ground[row]; }
   int Line(std::size_t row) const;  // 0 where the file has no lines
 

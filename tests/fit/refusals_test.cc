@@ -300,6 +300,96 @@ TEST_F(RefusalsTest, RowsOnTheGroundThatNobodyLeftOutAreNamed) {
   Expect(Says(log, no_altitude), {"120 of 600 rows look like the ground", "'in_flight: {COLUMN: [WORD]}'"});
 }
 
+// 600 rows of an AirData export, the first fifth idling a metre above where it took off.
+std::string AirDataText(bool with_state) {
+  std::string text = fmt::format(
+      "time(millisecond),voltage(v),current(A),speed(m/s), zSpeed(m/s),height_above_takeoff(meters){}\n",
+      with_state ? ",flycState" : "");
+  double altitude = 20.0;
+  for (int i = 0; i < 600; ++i) {
+    const bool idle = i < 120;
+    const int phase = i / 30 % 4;
+    const double climb = idle ? 0.0 : phase == 1 ? 1.5 : phase == 3 ? -1.5 : 0.0;
+    const double speed = phase == 2 ? 2.0 + i / 100 : 0.2;
+    const double power = 300.0 + 25.0 * climb + 0.4 * speed * speed + 6.0 * std::sin(1.7 * i);
+    altitude += 0.5 * climb;
+    text += fmt::format("{},15,{:.4f},{:.2f},{:.2f},{:.2f}{}\n", 500 * i, (idle ? 8.0 : power) / 15.0,
+                        idle ? 0.0 : speed, -climb, idle ? 1.0 : altitude,
+                        !with_state ? ""
+                        : idle      ? ",Motors_Started"
+                                    : ",GPS_Atti");
+  }
+  return text;
+}
+
+// Half a metre above take-off is a guess; what an autopilot says is not.
+TEST_F(RefusalsTest, AnAirDataLogThatDoesNotTellTheGroundIsLookedAt) {
+  const auto fit = [&](bool with_state, const std::string& format) {
+    WriteFile(folder_ + "air.csv", AirDataText(with_state));
+    return RunFit(
+        {.logs = {folder_ + "air.csv"},
+         .format = format,
+         .robot = {{"robot.mass_kg", "2"}, {"robot.propellers", "4"}, {"robot.propeller_radius_m", "0.12"}}});
+  };
+  EXPECT_EQ(fit(true, "").log.rows_on_ground, 120);
+  Expect(flight_logs::Complaint([&] { fit(false, ""); }),
+         {"air.csv:2:1: 120 of 600 rows look like the ground", "put 'in_flight: {altitude_m: 2}'"});
+  WriteFile(folder_ + "air.yaml",
+            "columns: {time_s: time_s, voltage_v: battery_voltage_v, current_a: battery_current_a, "
+            "ground_speed_mps: "
+            "ground_speed_mps, climb_mps: climb_mps, altitude_m: altitude_m}\nin_flight: {altitude_m: 2}\n");
+  EXPECT_EQ(fit(false, folder_ + "air.yaml").log.rows_on_ground, 120);
+}
+
+TEST_F(RefusalsTest, AFlightCountsOnce) {
+  const std::string log = folder_ + "log.csv", copy = folder_ + "copy.csv", part = folder_ + "part.csv";
+  Fit(LogText());
+  WriteFile(copy, LogText());
+  const std::string text = LogText();
+  WriteFile(part, text.substr(0, text.find("\n200,") + 1));
+  const auto says = [&](const std::vector<std::string>& logs, const std::vector<std::string>& evaluate) {
+    std::string message = flight_logs::Complaint(
+        [&] { RunFit({.logs = logs, .format = folder_ + "format.yaml", .evaluate = evaluate}); });
+    for (std::size_t at; (at = message.find(folder_)) != std::string::npos;)
+      message.erase(at, folder_.size());
+    return message;
+  };
+  EXPECT_EQ(says({log, log}, {}),
+            "log.csv: flight 'ed3r_refusals_log.csv' has the rows of flight 'ed3r_refusals_log.csv' of "
+            "log.csv: a flight "
+            "counts once; leave one of them out");
+  Expect(says({log, copy}, {}), {"copy.csv: flight ", " of log.csv: a flight counts once"});
+  Expect(says({log, part}, {}), {"part.csv: flight ", " of log.csv: a flight counts once"});
+  Expect(says({log}, {copy}),
+         {"--evaluate copy.csv: flight ", " of log.csv: only flights that the fit has not seen judge it"});
+  Expect(says({log}, {part}),
+         {"--evaluate part.csv: flight ", " of log.csv: only flights that the fit has not seen"});
+  WriteFile(copy, LogText([](Row& row) { row.power = fmt::format("{:.3f}", 1.01 * std::stod(row.power)); }));
+  EXPECT_EQ(RunFit({.logs = {log}, .format = folder_ + "format.yaml", .evaluate = {copy}}).evaluate_log->rows,
+            600);
+}
+
+TEST_F(RefusalsTest, NotesTellOfTheAirframeThatStandsInOnlyWhereItDoes) {
+  FitOptions options{.logs = {ED3R_SOURCE_DIR "/sweeps/data/flight/ardupilot_quad_log.csv"}};
+  const std::string other = "ground speed stands in for airspeed";
+  EXPECT_EQ(
+      RunFit(options).log.format.notes,
+      (std::vector<std::string>{"mass and airframe are not recorded; the paper's Iris stands in, and the "
+                                "efficiency scales with it",
+                                other}));
+  options.robot = {{"robot.mass_kg", "1.4"}, {"robot.propellers", "4"}, {"robot.propeller_radius_m", "0.12"}};
+  EXPECT_EQ(RunFit(options).log.format.notes, std::vector<std::string>{other});
+}
+
+TEST_F(RefusalsTest, ABatteryIsChosenOfRawLogsAlone) {
+  Fit(LogText());
+  FitOptions options{.logs = {folder_ + "log.csv"}, .format = folder_ + "format.yaml"};
+  options.reading.battery = 7;
+  EXPECT_EQ(flight_logs::Complaint([&] { RunFit(options); }),
+            "--battery: is not allowed for '" + folder_ +
+                "log.csv', whose columns are of one battery; allowed: for PX4 and ArduPilot logs");
+}
+
 TEST_F(RefusalsTest, WhatOnlyResemblesTheGroundIsFitted) {
   // Drop-outs of a sensor come on the move, too; a short rest is nothing that a robust fit minds.
   const std::string moving = LogText([](Row& row) {
