@@ -221,6 +221,8 @@ class ArgumentsTest(unittest.TestCase):
         self.refused("threads: 'all' is not allowed", self.env, threads="all")
         self.refused("settings: 'agents.eta_min=1' is not allowed; allowed: a list", self.env, settings="agents.eta_min=1")
         self.refused("settings: .*allowed: a list of texts", self.env, settings=[("agents.eta_min", 1)])
+        for wrong in ([["robot.mass_kg=2"]], np.array([["robot.mass_kg=2"]]), None, {"robot.mass_kg=2": 1}):
+            self.refused("settings: .*allowed: a list of texts", self.env, settings=wrong)
         self.refused("sweep: 3 is not allowed; allowed: a path", ed3r.VectorEnv, 3)
         self.refused("arm: None is not allowed; allowed: a text", ed3r.VectorEnv, self.sweep, None)
         self.refused("arm: 'nine' is not in the sweep.*did you mean mine", ed3r.VectorEnv, self.sweep, "nine")
@@ -241,6 +243,36 @@ class ArgumentsTest(unittest.TestCase):
         self.refused("agent: 3 is not allowed; allowed: a text", ed3r.save_network, self.root / "x.onnx", 3, [], [])
         self.refused("weights: None is not allowed", ed3r.save_network, self.root / "x.onnx", "rc", None, [])
         self.refused(r"weights\[0\]: 'w' is not allowed", ed3r.save_network, self.root / "x.onnx", "rc", "w".split(), [])
+
+    def test_masked_values_are_refused(self):
+        """numpy.asarray gives what lies beneath the mask."""
+        masked = " an array with masked values is not allowed; allowed: arrays with none masked"
+        env = self.env()
+        obs, infos = env.reset()
+        actions = np.ma.array(hovering(obs, infos))
+        actions[1, 2] = np.ma.masked
+        self.refused("actions:" + masked, env.step, actions)
+        self.refused("actions:" + masked, env.step, list(actions))
+        out = self.root / "masked"
+        fly = ed3r.fly
+        self.refused("policy:" + masked, fly, self.sweep, lambda obs, info: np.ma.masked_less(hovering(obs, info), 1), out,
+                     version="1")
+        path = self.root / "masked.onnx"
+        layers = {"weights": [np.zeros((13, 1))], "biases": [np.zeros(1)], "mean": np.zeros(13), "sd": np.ones(13)}
+        for name, value in layers.items():
+            wrong = [np.ma.masked_equal(value[0], 0)] if isinstance(value, list) else np.ma.masked_less(value, 2)
+            given = {**layers, name: wrong}
+            self.refused(name + r"(\[0\])?:" + masked, ed3r.save_network, path, "rc", **given)
+        self.assertFalse(path.exists())
+        unmasked = np.ma.array(hovering(obs, infos))  # none of its values is masked
+        self.assertEqual(len(env.step(unmasked)), 5)
+
+    def test_a_network_that_cannot_be_written(self):
+        layers = ([np.zeros((13, 1))], [np.zeros(1)])
+        self.refused("path: '.*' cannot be written .Is a directory.; allowed: a file in a folder", ed3r.save_network,
+                     self.root, "rc", *layers)
+        self.refused("path: '.*none/x.onnx' cannot be written .No such file", ed3r.save_network,
+                     self.root / "none" / "x.onnx", "rc", *layers)
 
     def test_numbers_are_cut_and_codes_are_not(self):
         wild, tame = self.env(), self.env()

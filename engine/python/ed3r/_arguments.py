@@ -41,9 +41,11 @@ def path(name, value):
 
 
 def settings(value):
-    if isinstance(value, str) or not all(isinstance(item, str) for item in np.ravel(np.asarray(value, object))):
+    listed = hasattr(value, "__iter__") and not isinstance(value, (str, bytes, dict, set))
+    items = list(value) if listed else [None]
+    if not all(isinstance(item, str) for item in items):
         refuse("settings", value, "a list of texts KEY=VALUE")
-    return list(value)
+    return items
 
 
 def request(sweep, changes, seed, missions=None):
@@ -76,7 +78,18 @@ def seeds(value, rows):
         refuse("seed", value, allowed)
 
 
+def unmasked(name, value):
+    """Refuses a numpy masked array with a masked value, or a list of such: an array of it has the number beneath the mask."""
+    def masked(part):
+        return any(map(masked, part)) if isinstance(part, (list, tuple)) else np.ma.is_masked(part)
+
+    if masked(value):
+        raise UserError(f"{name}: an array with masked values is not allowed; allowed: arrays with none masked; "
+                        "fill them (numpy.ma.filled)")
+
+
 def numbers(name, value, shape):
+    unmasked(name, value)
     try:
         array = np.asarray(value)
     except (TypeError, ValueError):
@@ -90,6 +103,7 @@ def numbers(name, value, shape):
 
 def marks(name, value, rows):
     """A mask of rows, which marks one at least."""
+    unmasked(name, value)
     try:
         mask = np.asarray(value)
     except ValueError:

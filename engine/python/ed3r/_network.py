@@ -6,6 +6,7 @@ from . import _arguments, _core
 
 
 def _array(name, value, kind=np.float32):
+    _arguments.unmasked(name, value)
     try:
         return np.ascontiguousarray(value, kind)
     except (TypeError, ValueError):
@@ -27,5 +28,9 @@ def save_network(path, agent, weights, biases, *, mean=None, sd=None):
     sd = np.empty(0) if sd is None else _array("sd", sd, float).ravel()
     inverse = np.divide(1.0, sd, out=np.zeros(sd.size), where=sd != 0)
     data = _core.network_bytes(path, _arguments.text("agent", agent), weights, biases, mean, inverse.tolist())
-    with open(path, "wb") as file:
-        file.write(data)
+    try:
+        with open(path, "wb") as file:
+            file.write(data)
+    except OSError as error:
+        raise _arguments.UserError(f"path: '{path}' cannot be written ({error.strerror}); allowed: a file in a folder that "
+                                   "is there") from None
