@@ -114,7 +114,14 @@ void WriteTable(const std::string& path, const Confidences& found) {
   WriteFile(path, text);
 }
 
-int Evaluate(const Options& options, const perception::DetectorPair& detectors) {
+int Evaluate(const Options& options, const DetectorConfig& config,
+             const perception::DetectorPair& detectors) {
+  const std::filesystem::path folder(options.path);
+  if (!options.table.empty())
+    CheckNoInput(options.table,
+                 {folder / "frames.npy", folder / "labels.csv", folder / "manifest.json", config.full,
+                  config.quantized},
+                 "--table");
   const detection::FrameSet set = detection::ReadFrameSet(options.path);
   const Confidences found = Look(detectors, set.frames);
   if (!options.table.empty()) WriteTable(options.table, found);
@@ -243,7 +250,7 @@ int Detect(const Options& options) {
   Config config;
   ApplySettings(options.settings, Scope::kMission, config);
   const perception::DetectorPair detectors = perception::LoadDetectors(config.perception.detector);
-  if (detection::IsFrameSet(options.path)) return Evaluate(options, detectors);
+  if (detection::IsFrameSet(options.path)) return Evaluate(options, config.perception.detector, detectors);
   if (!options.table.empty()) throw UserError("--table: is for a folder of 'ed3r frames'");
   const int status = LookAtPictures(options, detectors);
   NoteBuiltin(config.perception.detector);

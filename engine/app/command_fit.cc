@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <vector>
 
 #include "engine/app/commands.h"
 #include "engine/app/perception_looks.h"
@@ -76,6 +77,12 @@ int Fit(Options options) {
     options.fit.robot.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
   }
   if (!options.battery.empty()) options.fit.reading.battery = BatteryOf(options.battery);
+  std::vector<std::string> inputs = options.fit.logs;
+  inputs.insert(inputs.end(), options.fit.evaluate.begin(), options.fit.evaluate.end());
+  inputs.insert(inputs.end(), {options.fit.format, options.fit.evaluate_format});
+  if (!options.out.empty())
+    for (const char* output : fit::kFitOutputs)
+      CheckNoInput(std::filesystem::path(options.out) / output, inputs, "--out");
   const fit::FitReport report = fit::RunFit(options.fit);
   figures::DrawResult drawn;
   if (!options.out.empty()) {

@@ -18,6 +18,7 @@
 #include "engine/perception/render/renderer.h"
 #include "engine/perception/render/training_views.h"
 #include "engine/perception/vision/frame_detector.h"
+#include "engine/world/world_file.h"
 
 namespace ed3r::app {
 namespace {
@@ -98,6 +99,8 @@ class DataSet {
     CheckCount("--frames", options.frames, 1, config.sensing.Frames());
     CheckCount("--pictures", options.pictures, 0, 1000);
     for (const std::string& file : options.worlds) {
+      for (const char* output : {"frames.npy", "labels.csv", "manifest.json"})
+        CheckNoInput(fs::path(options.out) / output, world::FilesOf(world::ReadWorldFile(file)), "--out");
       worlds_.push_back(world::Scene::Load(file));
       if (worlds_.back()->Sites().empty())
         throw UserError(file + ": a world without fire sites cannot be used here");

@@ -5,9 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/app/commands.h"
+#include "engine/core/file.h"
 #include "engine/world/map_picture.h"
 #include "engine/world/measures.h"
 #include "engine/world/scene.h"
+#include "engine/world/world_file.h"
 
 namespace ed3r::app {
 namespace {
@@ -126,6 +128,9 @@ Command AddWorld(Program& program) {
       .Path();
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
+            if (!options->picture.empty())
+              CheckNoInput(options->picture, world::FilesOf(world::ReadWorldFile(options->file)),
+                           "--picture");
             const std::shared_ptr<const world::Scene> scene = world::Scene::Load(options->file);
             const world::WorldMeasures measures = world::MeasureWorld(*scene);
             if (options->json)

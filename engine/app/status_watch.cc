@@ -9,12 +9,14 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <thread>
 
 #include "engine/app/commands.h"
 #include "engine/core/file.h"
 #include "engine/core/interrupt.h"
 #include "engine/store/gathered_shards.h"
+#include "engine/store/schema.h"
 #include "engine/store/tally.h"
 #include "studies/metrics/metrics.h"
 #include "studies/report/load.h"
@@ -167,6 +169,11 @@ std::string StatusPage(const StatusLook& look, int seconds) {
 }
 
 int WatchStatus(const WatchOptions& options) {
+  if (!options.html.empty()) {
+    std::vector<std::string> stores = store::StoresThatAdd(options.dir).dirs;
+    for (std::string& store : stores) store = (std::filesystem::path(store) / store::kResultsFile).string();
+    CheckNoInput(options.html, stores, "--html");
+  }
   InstallInterruptHandler();
   const auto begin = std::chrono::steady_clock::now();
   std::int64_t done_at_first = -1;

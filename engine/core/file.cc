@@ -222,6 +222,15 @@ void WriteFile(const fs::path& path, std::string_view content) {
   file.Commit();
 }
 
+void CheckNoInput(const fs::path& output, const std::vector<std::string>& inputs, std::string_view option) {
+  std::error_code none;  // what is not there is no input
+  for (const std::string& input : inputs)
+    if (fs::equivalent(output, input, none))
+      throw UserError(
+          fmt::format("{}: '{}' is what this command reads; allowed: another place, so that '{}' stays",
+                      option, output.string(), input));
+}
+
 int RemoveLeftovers(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> found;

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ed3r {
 
@@ -48,6 +49,11 @@ class AtomicFile {
 };
 
 void WriteFile(const std::filesystem::path& path, std::string_view content);
+
+// UserError where the file that `option` is to write is one of the inputs, by path, link or hard link: the command would
+// write over what it reads.
+void CheckNoInput(const std::filesystem::path& output, const std::vector<std::string>& inputs,
+                  std::string_view option);
 
 // Removes what AtomicFile left in this folder in processes that were killed: files of its names alone, that no process
 // of this machine has open, or that another machine has not touched for a day. Errors are passed over: nothing depends on

@@ -322,4 +322,12 @@ WorldSpec ReadWorldFile(const std::string& file) {
   return spec;
 }
 
+std::vector<std::string> FilesOf(const WorldSpec& spec) {
+  std::vector<std::string> files = spec.bases;
+  files.push_back(spec.file);
+  if (spec.grid) files.push_back(spec.grid->file);
+  if (spec.forest && spec.forest->stem_map) files.push_back(spec.forest->stem_map->file);
+  return files;
+}
+
 }  // namespace ed3r::world

@@ -136,4 +136,7 @@ struct WorldSpec {
 // key.
 WorldSpec ReadWorldFile(const std::string& file);
 
+// The files that make the world: the world file, those that it takes over, its grid and its stem map.
+std::vector<std::string> FilesOf(const WorldSpec& spec);
+
 }  // namespace ed3r::world

@@ -21,6 +21,9 @@ nlohmann::ordered_json ToJson(const FitReport& report);
 // chosen as energy.model: what a sweep includes. Intervals stand in comments.
 std::string FittedYaml(const FitReport& report);
 
+inline constexpr const char* kFitOutputs[] = {"report.txt", "fit.json", "fitted.yaml", "flights.csv",
+                                              "rows.csv"};
+
 // Writes into the directory, making it: report.txt, fit.json, fitted.yaml, flights.csv (energy per flight)
 // and rows.csv (every row with each model's held-out prediction); scripts/plot_fit.py draws from fit.json and
 // rows.csv. Throws UserError where a file cannot be written.
