@@ -109,7 +109,8 @@ sweep::RunId StoredRun::Find(const std::string& mission) const {
   int number = -1;
   if (slash != std::string::npos) {
     const char* const end = mission.data() + mission.size();
-    if (std::from_chars(mission.data() + slash + 1, end, number).ptr != end) number = -1;
+    const auto read = std::from_chars(mission.data() + slash + 1, end, number);
+    if (read.ptr != end || fmt::format("{}", number) != mission.substr(slash + 1)) number = -1;  // 010, too
   }
   CheckOneStage(mission, arm_text, plan_);
   for (std::size_t s = 0; s < plan_.stages.size(); ++s) {

@@ -2,7 +2,7 @@
 // parameters; the sweep is the cartesian product of its axes in the order written, the first one slowest.
 //
 //   agents.eta_min: [0.65, 0.75]                          grid: a point per value
-//   radio.path_loss_exponent: {range: [3.0, 4.0, 0.2]}    grid: first, last, step; the last is included
+//   radio.path_loss_exponent: {range: [3.0, 4.0, 0.2]}    grid: first, last, step; the last is included where met
 //   zip:                                                  lockstep: point i sets all i-th values
 //     robot.mass_kg: [1, 2]
 //     robot.battery_mah: [3000, 4000]

@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
 constexpr std::string_view kJpegMagic = "\xff\xd8\xff";
+constexpr char kTurned[] = "turned as its camera says";
 
 class HeaderReader {
  public:
@@ -30,6 +31,9 @@ class HeaderReader {
     if (bytes_.starts_with(kJpegMagic)) return Jpeg();
     Refuse("is neither a PNG nor a JPEG picture");
   }
+
+  // Of a JPEG, after Read: its EXIF block, "" for none.
+  std::string_view Exif() const { return exif_; }
 
  private:
   [[noreturn]] void Refuse(const std::string& why) const {
@@ -66,7 +70,7 @@ class HeaderReader {
   }
 
   // Segments: marker, length, data. A frame header (SOF) tells the sides.
-  PictureSides Jpeg() const {
+  PictureSides Jpeg() {
     std::size_t at = 2;
     while (true) {
       if (Number(at, 1) != 0xff) Refuse("is damaged: a marker is missing");
@@ -82,6 +86,8 @@ class HeaderReader {
       const bool bare = marker == 0x01 || (marker >= 0xd0 && marker <= 0xd8);
       const std::uint32_t length = bare ? 0 : Number(at + 2, 2);
       if (!bare && length < 2) Refuse("is damaged: a segment without a length");
+      const std::string_view data = bytes_.substr(std::min(at + 4, bytes_.size()), std::max(length, 2u) - 2);
+      if (marker == 0xe1 && exif_.empty() && data.starts_with(std::string_view("Exif\0\0", 6))) exif_ = data;
       at += 2 + length;
     }
     const PictureSides sides = Checked({Number(at + 7, 2), Number(at + 5, 2)});
@@ -102,6 +108,7 @@ class HeaderReader {
 
   std::string_view bytes_;
   const std::string& name_;
+  std::string_view exif_;
 };
 
 // True where something is see-through; `bgr` is what is seen over black.
@@ -133,7 +140,7 @@ Picture PngPicture(const std::string& bytes, const std::string& path) {
   if (png.grey) notes.push_back("grey");
   if (png.sixteen_bits) notes.push_back("upper 8 of 16 bits");
   if (through) notes.push_back("see-through parts as black");
-  if (png.orientation != 1) notes.push_back("turned as its camera says");
+  if (png.orientation != 1) notes.push_back(kTurned);
   picture.note = fmt::format("{}", fmt::join(notes, ", "));
   return picture;
 }
@@ -149,7 +156,13 @@ Picture JpegPicture(const std::string& bytes, const std::string& path) {
     picture.bgr.release();
   }
   if (picture.bgr.empty()) throw UserError(fmt::format("{}: is no picture that can be read", path));
-  picture.note = channels == 1 ? "grey" : channels == 4 ? "from four inks" : "";
+  std::vector<std::string> notes;
+  if (channels == 1) notes.push_back("grey");
+  if (channels == 4) notes.push_back("from four inks");
+  HeaderReader header(bytes, path);
+  header.Read();
+  if (ExifOrientation(header.Exif()) != 1) notes.push_back(kTurned);  // by OpenCV
+  picture.note = fmt::format("{}", fmt::join(notes, ", "));
   return picture;
 }
 

@@ -144,6 +144,7 @@ TEST_F(ExplainTest, AMistypedArmIsAnsweredWithTheNearest) {
   ExpectRefusal(explain + "rbs", "rbs: expected ARM/NUMBER; the arms are online/rbs");
   ExpectRefusal(explain + "rsb/x", "rsb/x: expected ARM/NUMBER; the arms are online/rbs");
   ExpectRefusal(explain + "rbs/4", "rbs/4: mission numbers of rbs are 0 .. 3");
+  ExpectRefusal(explain + "rbs/00", "rbs/00: mission numbers of rbs are 0 .. 3");
   for (const char* command : {"explain", "replay"})
     EXPECT_TRUE(Contains(Ed3r(fmt::format("{} --help", command)).out, "missions count from 0")) << command;
   EXPECT_TRUE(Contains(Ed3r("explain --help").out, "timesteps count from 1"));

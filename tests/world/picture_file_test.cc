@@ -88,13 +88,18 @@ TEST_F(PictureFile, ColoursComeBackBitForBit) {
   EXPECT_EQ(read.note, "");
 }
 
-// A PNG with an eXIf chunk behind its header, of one entry: the orientation.
-std::string WithOrientation(const std::string& png, int orientation, bool little) {
-  std::string chunk = little ? std::string("II*\0\x8\0\0\0\x1\0\x12\x1\x3\0\x1\0\0\0", 18)
+// An EXIF block of one entry: the orientation.
+std::string ExifBlock(int orientation, bool little) {
+  std::string block = little ? std::string("II*\0\x8\0\0\0\x1\0\x12\x1\x3\0\x1\0\0\0", 18)
                              : std::string("MM\0*\0\0\0\x8\0\x1\x1\x12\0\x3\0\0\0\x1", 18);
-  if (!little) chunk += '\0';
-  chunk += static_cast<char>(orientation);
-  chunk += std::string(little ? 7 : 6, '\0');
+  if (!little) block += '\0';
+  block += static_cast<char>(orientation);
+  return block + std::string(little ? 7 : 6, '\0');
+}
+
+// A PNG with an eXIf chunk behind its header.
+std::string WithOrientation(const std::string& png, int orientation, bool little) {
+  const std::string chunk = ExifBlock(orientation, little);
   const std::string typed = "eXIf" + chunk;
   const auto number = [](std::uint32_t value) {
     std::string bytes;
@@ -122,6 +127,18 @@ TEST_F(PictureFile, APngIsTurnedAsItsCameraSays) {
       EXPECT_EQ(picture.bgr.at<cv::Vec3b>(seen[orientation - 1]), pixel);
     }
   for (const int none : {0, 9, 255}) EXPECT_TRUE(Same(Read(WithOrientation(png, none, true)).bgr, stored));
+}
+
+TEST_F(PictureFile, JpegsThatAreTurnedSaySo) {
+  const std::string jpeg = Encoded(".jpg", cv::Mat(48, 64, CV_8UC3, cv::Scalar(9, 90, 200)));
+  for (int orientation = 1; orientation <= 8; ++orientation) {
+    const std::string block = std::string("Exif\0\0", 6) + ExifBlock(orientation, true);
+    const std::string marked =
+        jpeg.substr(0, 2) + "\xff\xe1" + '\0' + static_cast<char>(block.size() + 2) + block + jpeg.substr(2);
+    const Picture picture = Read(marked);
+    EXPECT_EQ(picture.note, orientation == 1 ? "" : "turned as its camera says");
+    EXPECT_EQ(picture.bgr.size(), orientation < 5 ? cv::Size(64, 48) : cv::Size(48, 64));
+  }
 }
 
 TEST_F(PictureFile, GreyIsThreeEqualColours) {
