@@ -8,6 +8,7 @@
 
 #include "engine/app/commands.h"
 #include "engine/app/perception_looks.h"
+#include "engine/app/settings.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/file.h"
@@ -76,6 +77,7 @@ int Fit(Options options) {
       throw UserError(fmt::format("--set {}: expected KEY=VALUE, e.g. robot.mass_kg=3.68", setting));
     options.fit.robot.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
   }
+  CheckSetOnce(options.set);
   if (!options.battery.empty()) options.fit.reading.battery = BatteryOf(options.battery);
   std::vector<std::string> inputs = options.fit.logs;
   inputs.insert(inputs.end(), options.fit.evaluate.begin(), options.fit.evaluate.end());

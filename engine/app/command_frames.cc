@@ -43,6 +43,11 @@ struct Options {
 
 perception::PictureSize SizeOf(const Options& options, const Config& config) {
   if (options.size.empty()) return {config.perception.render.width_px, config.perception.render.height_px};
+  for (const std::string& setting : options.settings)
+    if (setting.starts_with("perception.render.width_px=") ||
+        setting.starts_with("perception.render.height_px="))
+      throw UserError(
+          fmt::format("--size: is not allowed beside --set {}: both say the size; leave one out", setting));
   perception::PictureSize size{0, 0};
   const char* const end = options.size.data() + options.size.size();
   const auto width = std::from_chars(options.size.data(), end, size.width_px);

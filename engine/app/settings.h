@@ -8,7 +8,10 @@
 
 namespace ed3r::app {
 
-// Applies the settings in order and checks the rules between parameters. Throws UserError.
+// Refuses a key that is set twice: one of its values would be lost. Throws UserError.
+void CheckSetOnce(const std::vector<std::string>& settings);
+
+// Applies the settings, each key once, and checks the rules between parameters. Throws UserError.
 void ApplySettings(const std::vector<std::string>& settings, Scope scope, Config& config);
 
 }  // namespace ed3r::app
