@@ -110,11 +110,8 @@ Command AddFit(Program& program) {
   parser.Option("--format", options->fit.format,
                 "Columns: m100 | ardupilot | px4 | dji | FILE.yaml; default by content");
   parser.Option("--evaluate", options->fit.evaluate, "Logs that only judge the fit").OneValue();
-  parser.Option("--evaluate-format", options->fit.evaluate_format, "Their columns; default those of LOG");
-  parser
-      .Option("--perception", options->perception,
-              "Instead of LOG: fit the fast perception tier to a run of the pixel tier (run directory)")
-      .Excludes("LOG");
+  parser.Option("--evaluate-format", options->fit.evaluate_format, "Their columns; default those of LOG")
+      .Needs("--evaluate");
   parser.Flag("--skip-bad", options->fit.reading.skip_bad,
               "Leave out and count rows or messages that cannot be read (at most 10 %)");
   parser.Option("--battery", options->battery,
@@ -125,14 +122,22 @@ Command AddFit(Program& program) {
               "Folder for report, fitted.yaml, flights.csv and rows.csv; with --perception for "
               "perception.yaml, perception.json, looks.csv")
       .Path();
+  parser.Flag("--no-figures", options->no_figures, "With --out: draw nothing (no Python)");
+  const std::vector<std::string> of_logs = {"LOG",        "--format",  "--evaluate", "--evaluate-format",
+                                            "--skip-bad", "--battery", "--set",      "--no-figures"};
+  parser
+      .Option("--perception", options->perception,
+              "Instead of LOG: fit the fast perception tier to a run of the pixel tier (run directory)")
+      .Path()
+      .Excludes(of_logs);
   parser
       .Option("--self-check", options->self_check.fits,
               "Instead of LOG: fit this many synthetic logs and say how often the intervals hold the truth")
       .Range(1, 1000000)
-      .Excludes("LOG");
+      .Excludes(of_logs)
+      .Excludes({"--out", "--perception"});
   parser.Option("--model", options->self_check.model, "Model of the synthetic logs; default momentum")
       .Needs("--self-check");
-  parser.Flag("--no-figures", options->no_figures, "With --out: draw nothing (no Python)");
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] { return Fit(*options); }};
 }

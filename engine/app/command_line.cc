@@ -56,8 +56,8 @@ Argument& Argument::Needs(const std::string& other) {
   return *this;
 }
 
-Argument& Argument::Excludes(const std::string& other) {
-  option_->excludes(command_->get_option(other));
+Argument& Argument::Excludes(const std::vector<std::string>& others) {
+  for (const std::string& other : others) option_->excludes(command_->get_option(other));
   return *this;
 }
 
@@ -77,8 +77,8 @@ template Argument CommandLine::Option(const std::string&, double&, const std::st
 template Argument CommandLine::Option(const std::string&, std::vector<std::string>&, const std::string&);
 template Argument CommandLine::Option(const std::string&, std::vector<int>&, const std::string&);
 
-void CommandLine::Flag(const std::string& name, bool& value, const std::string& about) {
-  command_->add_flag(name, value, about);
+Argument CommandLine::Flag(const std::string& name, bool& value, const std::string& about) {
+  return Argument(command_, command_->add_flag(name, value, about));
 }
 
 void CommandLine::Footer(const std::string& text) { command_->footer(text); }

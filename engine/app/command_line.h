@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -23,7 +24,7 @@ class Argument {
   Argument& Range(std::int64_t low, std::int64_t high);
   Argument& Numbers(const std::string& shown);  // of a list: '1,4', '1 4' or the option twice
   Argument& Needs(const std::string& other);    // names of arguments that stand before this one
-  Argument& Excludes(const std::string& other);
+  Argument& Excludes(const std::vector<std::string>& others);
 
  private:
   CLI::App* command_;
@@ -38,7 +39,7 @@ class CommandLine {
   // std::string or int. It holds the default, must outlive the parsing, and is changed only where the argument is given.
   template <class Value>
   Argument Option(const std::string& name, Value& value, const std::string& about);
-  void Flag(const std::string& name, bool& value, const std::string& about);
+  Argument Flag(const std::string& name, bool& value, const std::string& about);
   void Footer(const std::string& text);
 
   bool Chosen() const;  // after the parsing: whether this is the command that was called

@@ -11,6 +11,7 @@
 #include "engine/app/sweep_arguments.h"
 #include "engine/app/words.h"
 #include "engine/schedule/inputs.h"
+#include "kernels/simd_level.h"
 
 namespace ed3r::app {
 namespace {
@@ -116,6 +117,7 @@ Command AddPlan(Program& program) {
       .Range(1, 100'000);
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
+            kernels::ActiveSimdLevel();  // what 'ed3r run' would refuse
             const sweep::SweepPlan plan = options->sweep.Load();
             schedule::CheckPlan(plan);
             const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

@@ -98,20 +98,29 @@ Command AddStatus(Program& program) {
       "Done, failed and missing missions of a run, while it runs or after; exit 1 where any is damaged");
   const auto options = AddDirOptions(parser);
   auto watch = std::make_shared<WatchOptions>();
-  parser.Flag("--watch", watch->terminal,
-              "Shows rates, the expected end and intervals until nothing is missing");
+  parser
+      .Flag("--watch", watch->terminal,
+            "Shows rates, the expected end and intervals until nothing is missing")
+      .Excludes({"--json"});
   parser
       .Option("--html", watch->html, "Keeps writing a page that shows itself anew, until nothing is missing")
-      .Path();
-  parser.Option("--every", watch->seconds, "Seconds between two looks of --watch and --html; default 5")
+      .Path()
+      .Excludes({"--json"});
+  auto every_s = std::make_shared<int>(0);  // 0: not given
+  parser.Option("--every", *every_s, "Seconds between two looks of --watch and --html; default 5")
       .Range(1, 3600);
   auto stage = std::make_shared<std::string>();
-  parser.Option(
-      "--stage", *stage,
-      "Whether this stage is finished: exit 0; 3 when missions failed or are missing; 75 when a stage "
-      "with a precision is due another round");
-  return {parser, [options, stage, watch] {
+  parser
+      .Option(
+          "--stage", *stage,
+          "Whether this stage is finished: exit 0; 3 when missions failed or are missing; 75 when a stage "
+          "with a precision is due another round")
+      .Excludes({"--watch", "--html", "--json"});
+  return {parser, [options, stage, watch, every_s] {
             watch->dir = options->dir;
+            if (*every_s > 0 && !watch->terminal && watch->html.empty())
+              throw UserError("--every: is of --watch and --html, which look again");
+            if (*every_s > 0) watch->seconds = *every_s;
             if (watch->terminal || !watch->html.empty()) return WatchStatus(*watch);
             if (!stage->empty()) return static_cast<int>(TellStage(options->dir, *stage));
             if (IsTallied(options->dir)) return static_cast<int>(TellTally(options->dir, options->json));

@@ -245,7 +245,7 @@ Command AddSlurm(Program& program) {
   parser.Flag(
       "--missing", options->missing,
       "Say which tasks are still owed by what is stored; with --submit, submit just those and what follows");
-  parser.Flag("--force", options->force, "Write over scripts that have been edited");
+  parser.Flag("--force", options->force, "Write over scripts that have been edited").Excludes({"--missing"});
   return {parser, [options] { return Run(*options); }};
 }
 

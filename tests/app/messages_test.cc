@@ -121,6 +121,61 @@ TEST(MessagesTest, ANumberIsWrittenInDigitsOrRefused) {
   EXPECT_FALSE(fs::exists(out));
 }
 
+TEST(MessagesTest, AnOptionWithoutEffectIsRefused) {
+  const std::string log = ED3R_SOURCE_DIR "/sweeps/data/flight/ardupilot_quad_log.csv";
+  ExpectRefusal("fit " + log + " --battery 7",
+                "--battery: is not allowed for '" + log +
+                    "', whose columns are of one battery; allowed: for PX4 and ArduPilot logs");
+  const std::string more = "; 'ed3r --help' tells more";
+  ExpectRefusal("fit " + log + " --evaluate-format m100",
+                "ed3r: --evaluate-format requires --evaluate" + more);
+  for (const char* option :
+       {"--format m100", "--skip-bad", "--battery 1", "--set robot.mass_kg=1", "--no-figures"})
+    for (const char* other : {"--perception", "--self-check"}) {
+      const std::string name = std::string(option).substr(0, std::string(option).find(' '));
+      const CommandResult result = Ed3r(fmt::format("fit {} 3 {}", other, option));
+      EXPECT_EQ(result.status, 2);
+      EXPECT_TRUE(result.err == fmt::format("ed3r: {} excludes {}{}\n", name, other, more) ||
+                  result.err == fmt::format("ed3r: {} excludes {}{}\n", other, name, more))
+          << result.err;
+    }
+  ExpectRefusal("status none --every 3", "--every: is of --watch and --html, which look again");
+  EXPECT_EQ(Ed3r("status none --watch --json").status, 2);
+  EXPECT_EQ(Ed3r("status none --stage online --watch").status, 2);
+  EXPECT_EQ(Ed3r("slurm " + kRbs + " --missing --force").status, 2);
+}
+
+TEST(MessagesTest, AKeyThatIsSetTwiceIsRefused) {
+  const std::string twice = " --set robot.mass_kg=2 --set robot.mass_kg=3";
+  const std::string why =
+      "--set robot.mass_kg=3: robot.mass_kg: is set twice, first by --set robot.mass_kg=2";
+  const ScratchFolder scratch;
+  ExpectRefusal("physics" + twice, why);
+  ExpectRefusal("fit " ED3R_SOURCE_DIR "/sweeps/data/flight/ardupilot_quad_log.csv" + twice, why);
+  ExpectRefusal("detect " + scratch.Path().string() + twice, why);
+  const std::string frames = "frames --out " + (scratch / "set").string();
+  ExpectRefusal(frames + twice, why);
+  ExpectRefusal(
+      frames + " --size 64x64 --set perception.render.width_px=32",
+      "--size: is not allowed beside --set perception.render.width_px=32: both say the size; leave one out");
+  std::ofstream(scratch / "a.yaml") << "robot: {mass_kg: 2}\n";
+  std::ofstream(scratch / "b.yaml") << "robot: {width_m: 0.6}\n";
+  const std::string a = "robot=" + (scratch / "a.yaml").string(),
+                    b = "robot=" + (scratch / "b.yaml").string();
+  ExpectRefusal(fmt::format("physics --set {} --set {}", a, b),
+                fmt::format("--set {}: robot: is set twice, first by --set {}", b, a));
+  ExpectRefusal(fmt::format("physics --set {} --set robot.mass_kg=3", a),
+                fmt::format("--set robot.mass_kg=3: robot.mass_kg: is set twice, first by --set {}", a));
+  EXPECT_FALSE(fs::exists(scratch / "set"));
+}
+
+TEST(MessagesTest, APlanRefusesWhatNoCpuCanFly) {
+  const CommandResult plan = Ed3r("plan " + kRbs, "ED3R_SIMD=sse");
+  EXPECT_EQ(plan.status, 2);
+  EXPECT_EQ(plan.err, Ed3r("run " + kRbs, "ED3R_SIMD=sse").err);
+  EXPECT_EQ(plan.out, "");
+}
+
 TEST(MessagesTest, ARefusalThatNobodyCanReadIsStillARefusal) {
   for (const char* closed : {"2>/dev/full", "2>&-", ">&- 2>&-"}) {
     const int status = std::system(fmt::format("{} runn {}", ED3R_BINARY, closed).c_str());
