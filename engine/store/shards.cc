@@ -14,10 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What is not there, or no more, holds nothing; of what cannot be looked at that is not known.
+// What is not there, or no more, holds nothing, nor does a FIFO, which whoever opens it names; of what cannot be looked at that
+// is not known.
 void CheckAbsent(const fs::path& path, const std::error_code& error) {
   if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory &&
-      error != std::errc::is_a_directory)
+      error != std::errc::is_a_directory && error != std::errc::not_supported)
     throw UserError(fmt::format("{}: {}", path.string(), error.message()));
 }
 
