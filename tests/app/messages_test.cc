@@ -139,6 +139,19 @@ TEST(MessagesTest, AnOptionWithoutEffectIsRefused) {
                   result.err == fmt::format("ed3r: {} excludes {}{}\n", other, name, more))
           << result.err;
     }
+  const ScratchFolder scratch;
+  std::ofstream(scratch / "learn.yaml")
+      << "name: learn\nmissions: 2\nset: {mission.world: " << ED3R_SOURCE_DIR
+      << "/sweeps/worlds/paper.yaml}\nstages:\n  - {name: walk, set: {strategy: random}}\n"
+      << "  - {name: networks, kind: train, after: walk}\n"
+      << "  - {name: flown, after: networks, set: {strategy: ed3r}}\n";
+  for (const char* option : {"--repair", "--only-failed", "--accept-mixed", "--profile", "--out x"})
+    ExpectRefusal(
+        fmt::format("run {} --stage networks --shard 1/2 --from none {}", (scratch / "learn.yaml").string(),
+                    option),
+        fmt::format("{}: is not allowed with a part of a training stage, which flies nothing and keeps no "
+                    "store; leave it out",
+                    std::string(option).substr(0, std::string(option).find(' '))));
   ExpectRefusal("status none --every 3", "--every: is of --watch and --html, which look again");
   EXPECT_EQ(Ed3r("status none --watch --json").status, 2);
   EXPECT_EQ(Ed3r("status none --stage online --watch").status, 2);
