@@ -12,8 +12,10 @@
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/core/remove_file.h"
 #include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
+#include "studies/figures/run_source.h"
 #include "studies/metrics/number_text.h"
 #include "studies/report/compare_page.h"
 #include "studies/report/departures.h"
@@ -136,6 +138,7 @@ void WriteFolder(const std::string& text, const std::vector<report::ComparedRun>
                  const Options& options) {
   const fs::path out(options.out);
   MakeFolder(out);
+  RemoveFile(out / "index.html");  // it comes last: where it is, all is of its runs
   WriteFile(out / "compare.txt", text);
   WriteFile(out / "differences.csv", variants::DifferenceCsv(study));
   WriteFile(out / "verdicts.csv", variants::VariantVerdictCsv(study));
@@ -159,8 +162,10 @@ int Compare(const Options& options) {
         *stores.emplace_back(std::make_unique<store::GatheredShards>(dir));
     shard_notes.insert(shard_notes.end(), gathered.notes().begin(), gathered.notes().end());
     store::ResultReader reader(gathered.dir());
-    auto [run, provenance] = report::LoadWhole(gathered.dir(), dir);
-    reader.CheckPlan();
+    const store::Transaction moment = reader.Moment();  // all of a run is of one
+    auto [run, provenance] = report::LoadWhole(reader, dir);
+    std::vector<figures::ArmPlan> plans = figures::ReadArmPlans(reader.StoredRecipe().plan_text);
+    figures::FoundScene scene = runs.empty() ? report::SceneOf(reader, plans) : figures::FoundScene();
     seeds.insert(reader.Layout().seed);
     const Fingerprints inputs = reader.StoredRecipe().inputs;
     if (labels.size() == 1) first_inputs = inputs;
@@ -170,7 +175,7 @@ int Compare(const Options& options) {
       throw UserError(fmt::format("{}: has variants of its own; 'ed3r report {}' compares them", dir, dir));
     departures[label] = report::ReadDepartures(reader)[""];
     for (metrics::ArmData& arm : variants::AsVariant(run.arms, label)) arms.push_back(std::move(arm));
-    runs.push_back({label, gathered.dir(), std::move(run), std::move(provenance)});
+    runs.push_back({label, std::move(run), std::move(provenance), std::move(plans), std::move(scene)});
   }
   std::vector<std::string> notes = DepartureLines(departures, labels, options.claims);
   variants::VariantStudy study = variants::CompareVariants(

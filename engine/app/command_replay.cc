@@ -92,7 +92,7 @@ void WriteViewer(StoredRun& run, const Options& options, const world::Scene& sce
   std::string title = options.mission;
   if (!options.beside.empty()) title += " beside " + options.beside;
   WriteFile(path,
-            report::SelfContainedPage(title + " – ED³R mission", bundle, data,
+            report::SelfContainedPage(title + report::kMissionTitle, bundle, data,
                                       "<p>The viewer is a program: it needs scripts. 'ed3r replay' without "
                                       "--html writes the mission's map and tables.</p>"));
 }

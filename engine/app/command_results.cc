@@ -13,13 +13,13 @@
 #include "engine/app/status_of_shards.h"
 #include "engine/app/status_watch.h"
 #include "engine/app/words.h"
-#include "engine/core/file.h"
 #include "engine/store/digest.h"
 #include "engine/store/gathered_shards.h"
 #include "engine/store/merge.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
 #include "engine/sweep/plan_text.h"
+#include "studies/figures/run_source.h"
 #include "studies/report/load.h"
 #include "studies/report/report.h"
 #include "studies/report/report_folder.h"
@@ -154,35 +154,53 @@ std::string NamesOfSeveralStages(const report::RunResults& results) {
       Counted(std::ssize(stages), "arm"), name, fmt::join(flown, ", "));
 }
 
+struct ReadRun {
+  report::WholeRun whole;
+  report::RunDepartures departures;
+  figures::RunSource source;
+};
+
+// Everything that a report tells, of one moment of a run that may be going on.
+ReadRun ReadForReport(store::ResultReader& reader, const ReportOptions& options) {
+  const store::Transaction moment = reader.Moment();
+  ReadRun read;
+  read.whole = report::LoadWhole(reader, options.dir);  // of a damaged run nothing is written
+  read.departures = report::ReadDepartures(reader);
+  read.source = figures::ReadRunSource(reader, report::ToldVariant(read.whole.results, options.variant));
+  return read;
+}
+
+std::string CommandOf(const ReportOptions& options) {
+  return "ed3r report " + options.dir + (options.out.empty() ? "" : " --out " + options.out) +
+         (options.claims ? " --claims" : "") +
+         (options.variant.empty() ? "" : " --variant " + options.variant);
+}
+
 int MakeReportOf(const ReportOptions& options) {
   const store::GatheredShards run(options.dir);
   store::ResultReader reader(run.dir());
-  const report::WholeRun whole =
-      report::LoadWhole(run.dir(), options.dir);  // of a damaged run nothing is written
-  reader.CheckPlan();                             // what it departs from is of the same plan
-  const report::RunResults& results = whole.results;
+  const ReadRun read = ReadForReport(reader, options);
+  const report::RunResults& results = read.whole.results;
   const report::Report report = report::MakeReport(
-      results, report::ReadDepartures(reader),
+      results, read.departures,
       options.claims ? report::Judging::kEverything : report::Judging::kWhatThePaperFlew, options.variant);
-  report::FolderOptions folder{.dir = run.dir(),
-                               .provenance = whole.provenance,
-                               .out = options.out,
+  report::FolderOptions folder{.provenance = read.whole.provenance,
+                               .source = read.source,
+                               .out = options.out.empty() ? options.dir + "/report" : options.out,
                                .figures = !options.no_figures,
                                .force = options.force,
-                               .command = ""};
-  folder.command = "ed3r report " + options.dir + (options.out.empty() ? "" : " --out " + options.out) +
-                   (options.claims ? " --claims" : "") +
-                   (options.variant.empty() ? "" : " --variant " + options.variant);
-  if (folder.out.empty()) folder.out = options.dir + "/report";
+                               .command = CommandOf(options)};
   WatchedMissions watched;
-  if (!options.no_missions) watched = WatchMissions(report, results, run.dir(), options.cache);
+  if (!options.no_missions)
+    watched = WatchMissions(report, results, read.source.plans, run.dir(), options.cache);
   folder.viewers_note = watched.note;
-  for (const WatchedMission& mission : watched.list)
+  for (WatchedMission& mission : watched.list) {
     folder.viewers.push_back({{"mission", mission.mission}, {"what", mission.what}, {"file", mission.file}});
+    folder.mission_pages[mission.file] = std::move(mission.page);
+  }
+  // Missions are flown again from a run that is opened again, and DIR/report would be in another.
+  reader.CheckNotReplaced();
   const report::FolderResult written = report::WriteReportFolder(report, results, folder);
-  if (!watched.list.empty()) MakeFolder(std::filesystem::path(folder.out) / "missions");
-  for (const WatchedMission& mission : watched.list)
-    WriteFile(std::filesystem::path(folder.out) / mission.file, mission.page);
   if (options.json)
     fmt::print("{}\n", report::ReportJson(report).dump(2));
   else

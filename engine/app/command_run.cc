@@ -117,7 +117,8 @@ int TrainAPart(const sweep::SweepPlan& plan, const Options& options, const sched
 
 std::string TableOf(const std::string& dir) {
   store::ResultReader reader(dir);
-  return report::ReportText(report::MakeReport(report::LoadRun(dir), report::ReadDepartures(reader)));
+  const store::Transaction moment = reader.Moment();
+  return report::ReportText(report::MakeReport(report::LoadRun(reader), report::ReadDepartures(reader)));
 }
 
 int Run(const Options& options) {

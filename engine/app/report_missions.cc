@@ -42,7 +42,7 @@ WatchedMissions Fly(const std::vector<report::ChosenMission>& chosen, const repo
                                          {"world", ViewerWorld(task.scene)},
                                          {"missions", {ViewerMission(run, mission)}}};
     watched.list.push_back({mission, what, FileOf(mission),
-                            report::SelfContainedPage(mission + " – ED³R mission", bundle, data, "")});
+                            report::SelfContainedPage(mission + report::kMissionTitle, bundle, data, "")});
   }
   return watched;
 }
@@ -50,11 +50,12 @@ WatchedMissions Fly(const std::vector<report::ChosenMission>& chosen, const repo
 }  // namespace
 
 WatchedMissions WatchMissions(const report::Report& report, const report::RunResults& results,
-                              const std::string& dir, const std::string& cache_dir) {
+                              std::span<const figures::ArmPlan> plans, const std::string& dir,
+                              const std::string& cache_dir) {
   const report::FoundBundle found = report::FindWebBundle("viewer");
   if (!found.bundle) return {};
   try {
-    return Fly(report::ChooseMissions(report, results, dir), *found.bundle, dir, cache_dir);
+    return Fly(report::ChooseMissions(report, results, plans), *found.bundle, dir, cache_dir);
   } catch (const UserError& error) {
     return {{}, std::string("no missions to watch: ") + error.what()};
   }

@@ -1,8 +1,11 @@
 // Missions worth watching, beside a report: viewer pages for a few of a run.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
+
+#include "studies/figures/run_source.h"
 
 namespace ed3r::report {
 struct Report;
@@ -26,6 +29,7 @@ struct WatchedMissions {
 // Those of ChooseMissions, flown again. None where the viewer's program is missing; none and a note in the pixel tier (a flight
 // is dear) and where the run cannot be flown again by this code.
 WatchedMissions WatchMissions(const report::Report& report, const report::RunResults& results,
-                              const std::string& dir, const std::string& cache_dir);
+                              std::span<const figures::ArmPlan> plans, const std::string& dir,
+                              const std::string& cache_dir);
 
 }  // namespace ed3r::app

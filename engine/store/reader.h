@@ -72,6 +72,9 @@ class ResultReader {
   // UserError where the plan has grown since this reader was opened: arms may have other numbers now. Whatever reads missions asks it.
   void CheckPlan();
 
+  // UserError where the directory holds another file now than the one that this reader reads.
+  void CheckNotReplaced() const { database_.CheckNotReplaced(); }
+
   const RunLayout& Layout() const { return layout_; }
   const Recipe& StoredRecipe() const { return recipe_; }  // without notes and files: see Sessions()
   std::vector<InputFile> Files();

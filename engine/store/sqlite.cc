@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -107,13 +108,31 @@ Connection::Connection(const std::string& file, Access access) : file_(file) {
   CheckJournals(file);
   sqlite3* database = nullptr;
   // An absolute path, because Debian's SQLite takes a name that begins with "file:" for a URI.
-  const std::string path = std::filesystem::absolute(file).string();
+  path_ = std::filesystem::absolute(file).string();
   const int status =
-      sqlite3_open_v2(path.c_str(), &database, OpenFlags(access) | SQLITE_OPEN_NOMUTEX, nullptr);
+      sqlite3_open_v2(path_.c_str(), &database, OpenFlags(access) | SQLITE_OPEN_NOMUTEX, nullptr);
   database_.reset(database);
   if (!database) throw StoreError(fmt::format("{}: out of memory", file));
   if (status != SQLITE_OK) Fail();
   SetBusyTimeout(kBusyTimeout_ms);
+  NoteIdentity();
+}
+
+void Connection::NoteIdentity() {
+  struct stat found = {};
+  int moved = 0;
+  if (::stat(path_.c_str(), &found) != 0 ||
+      sqlite3_file_control(database_.get(), nullptr, SQLITE_FCNTL_HAS_MOVED, &moved) != SQLITE_OK ||
+      moved != 0)
+    return;
+  device_ = found.st_dev, inode_ = found.st_ino;
+}
+
+void Connection::CheckNotReplaced() const {
+  struct stat found = {};
+  if (::stat(path_.c_str(), &found) != 0 || (found.st_dev == device_ && found.st_ino == inode_)) return;
+  throw UserError(
+      fmt::format("{}: was replaced since it was opened; open it again (the same command does)", file_));
 }
 
 void Connection::Execute(const std::string& sql) {

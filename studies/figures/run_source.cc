@@ -8,6 +8,7 @@
 
 #include "engine/core/check.h"
 #include "engine/store/restored_files.h"
+#include "engine/sweep/arm_id.h"
 #include "engine/sweep/plan_text.h"
 
 namespace ed3r::figures {
@@ -101,6 +102,22 @@ FoundScene FindScene(store::ResultReader& reader, const std::string& world) {
   } catch (const UserError& error) {
     return {nullptr, error.what()};
   }
+}
+
+RunSource ReadRunSource(store::ResultReader& reader, const std::string& variant) {
+  const store::Transaction moment = reader.Moment();
+  RunSource source;
+  source.plans = ReadArmPlans(reader.StoredRecipe().plan_text);
+  std::erase_if(source.plans,
+                [&](const ArmPlan& plan) { return sweep::ArmId::Of(plan.name).variant != variant; });
+  source.missions = PickMissions(reader, source.plans);
+  for (const ArmPlan& plan : source.plans)
+    if (!source.missions.empty() && plan.stage == source.missions.front().stage &&
+        plan.name == source.missions.front().arm)
+      source.scene = FindScene(reader, plan.Setting("mission.world"));
+  for (ArmPlan& plan : source.plans) plan.name = sweep::ArmId::Of(plan.name).name;
+  for (ShownMission& mission : source.missions) mission.arm = sweep::ArmId::Of(mission.arm).name;
+  return source;
 }
 
 }  // namespace ed3r::figures

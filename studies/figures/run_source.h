@@ -51,4 +51,14 @@ struct FoundScene {
 // flown.
 FoundScene FindScene(store::ResultReader& reader, const std::string& world);
 
+// All of it at once.
+struct RunSource {
+  std::vector<ArmPlan> plans;
+  std::vector<ShownMission> missions;
+  FoundScene scene;  // of the missions
+};
+
+// Of a sweep with variants: of this one, with the names that its arms have among themselves.
+RunSource ReadRunSource(store::ResultReader& reader, const std::string& variant);
+
 }  // namespace ed3r::figures

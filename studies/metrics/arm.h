@@ -14,7 +14,8 @@ struct ArmData {
   std::vector<mission::MissionRecord> missions;  // in mission order; without their timesteps
   int failed = 0;                                // threw inside the program; nothing of them counts
   int missing = 0;                               // planned, not flown yet
-  std::string world = {};  // fingerprint of what it was flown in; "" where it is not known
+  std::string world = {};         // fingerprint of what it was flown in; "" where it is not known
+  std::vector<int> numbers = {};  // of the missions in the plan; none where they are of no store
 };
 
 // What the warm-up had seen of a mission's place (the networks learnt on 6 of 14 sites and 1 of 2 stations).

@@ -6,9 +6,7 @@
 #include <iterator>
 
 #include "engine/core/check.h"
-#include "engine/store/reader.h"
 #include "studies/figures/figure_data.h"
-#include "studies/figures/run_source.h"
 #include "studies/report/page_data.h"
 #include "studies/tables/names.h"
 
@@ -31,7 +29,7 @@ struct Together {
 void Add(const ComparedRun& run, const std::string& letter, Together& together) {
   Report report;
   for (const metrics::ArmData& arm : run.results.arms) report.told.push_back(metrics::ComputeMetrics(arm));
-  PageMissions missions = ReadPageMissions(report, run.results, run.dir);
+  PageMissions missions = PageMissionsOf(report, run.results);
   for (std::size_t a = 0; a < report.told.size(); ++a) {
     together.origins.push_back(
         {letter, run.provenance.dir, report.told[a].stage + '/' + report.told[a].name});
@@ -40,20 +38,10 @@ void Add(const ComparedRun& run, const std::string& letter, Together& together) 
   std::move(report.told.begin(), report.told.end(), std::back_inserter(together.metrics));
   std::move(missions.arms.begin(), missions.arms.end(), std::back_inserter(together.missions.arms));
   std::move(missions.numbers.begin(), missions.numbers.end(), std::back_inserter(together.missions.numbers));
-  for (figures::ArmPlan& plan :
-       figures::ReadArmPlans(store::ResultReader(run.dir).StoredRecipe().plan_text)) {
+  for (figures::ArmPlan plan : run.plans) {
     plan.stage = run.label + '/' + plan.stage;
     together.plans.push_back(std::move(plan));
   }
-}
-
-// The world of the first run's arms.
-figures::FoundScene SceneOf(const ComparedRun& run) {
-  store::ResultReader reader(run.dir);
-  for (const figures::ArmPlan& plan : figures::ReadArmPlans(reader.StoredRecipe().plan_text))
-    if (const std::string world = plan.Setting("mission.world"); !world.empty())
-      return figures::FindScene(reader, world);
-  return {nullptr, "the plan names no world"};
 }
 
 // Short names for the pictures: A, B, ...
@@ -69,6 +57,13 @@ std::string Names(const std::vector<ComparedRun>& runs) {
 }
 
 }  // namespace
+
+figures::FoundScene SceneOf(store::ResultReader& reader, std::span<const figures::ArmPlan> plans) {
+  for (const figures::ArmPlan& plan : plans)
+    if (const std::string world = plan.Setting("mission.world"); !world.empty())
+      return figures::FindScene(reader, world);
+  return {nullptr, "the plan names no world"};
+}
 
 std::vector<std::string> ComparisonSentences(const variants::VariantStudy& study) {
   std::vector<std::string> sentences;
@@ -98,7 +93,7 @@ Json ComparePageData(const std::vector<ComparedRun>& runs, const variants::Varia
   ED3R_CHECK(runs.size() > 1, "runs to compare");
   Together together;
   for (std::size_t r = 0; r < runs.size(); ++r) Add(runs[r], Letter(r), together);
-  const figures::FoundScene found = SceneOf(runs.front());
+  const figures::FoundScene& found = runs.front().scene;
   Json figures = figures::MakeFigureData({.name = Names(runs),
                                           .arms = together.missions.arms,
                                           .metrics = together.metrics,

@@ -16,6 +16,7 @@ namespace {
 
 struct LoadedMissions {
   std::vector<mission::MissionRecord> records;
+  std::vector<int> numbers;
   std::int64_t end =
       0;  // after the last one's number: where it is more than there are, some between are missing
 
@@ -23,6 +24,7 @@ struct LoadedMissions {
   void Add(int number, const mission::MissionRecord& record) {
     records.push_back(record);
     records.back().steps = {};
+    numbers.push_back(number);
     end = number + 1;
   }
 };
@@ -79,6 +81,7 @@ RunResults ResultsOf(store::ResultReader& reader, const std::vector<store::ArmSt
     for (int a = 0; a < static_cast<int>(stage.arms.size()); ++a) {
       LoadedMissions loaded = missions(s, a);
       metrics::ArmData arm{stage.name, stage.arms[a].name, std::move(loaded.records)};
+      arm.numbers = std::move(loaded.numbers);
       arm.world = WorldOf(plans, reader.StoredRecipe().inputs, arm);
       const auto flown = static_cast<std::int64_t>(arm.missions.size());
       arm.failed = static_cast<int>(status[layout.RunIndex(s, a)].failed);
@@ -97,13 +100,16 @@ RunResults ResultsOf(store::ResultReader& reader, const std::vector<store::ArmSt
 
 RunResults LoadRun(const std::string& dir) {
   store::ResultReader reader(dir);
+  return LoadRun(reader);
+}
+
+RunResults LoadRun(store::ResultReader& reader) {
   const store::Transaction moment = reader.Moment();
   return ResultsOf(reader, reader.Status(),
                    [&](int stage, int arm) { return LoadMissions(reader, stage, arm); });
 }
 
-WholeRun LoadWhole(const std::string& dir, const std::string& called) {
-  store::ResultReader reader(dir);
+WholeRun LoadWhole(store::ResultReader& reader, const std::string& called) {
   const store::Transaction moment = reader.Moment();
   const store::RunLayout& layout = reader.Layout();
   std::map<std::int64_t, LoadedMissions> by_run;

@@ -12,6 +12,7 @@ namespace ed3r::report {
 // and how many failed or are missing; training stages are left out. The run may still be going on: all is of one moment.
 // Throws UserError where there is no store or a damaged one.
 RunResults LoadRun(const std::string& dir);
+RunResults LoadRun(store::ResultReader& reader);
 
 // The same with what made it and the digest of just these missions, for what is kept: everything is compared with its
 // checksums on the way, and UserError names the first damaged mission. `called`: how the run is named in it, which is read from
@@ -20,7 +21,7 @@ struct WholeRun {
   RunResults results;
   Provenance provenance;
 };
-WholeRun LoadWhole(const std::string& dir, const std::string& called);
+WholeRun LoadWhole(store::ResultReader& reader, const std::string& called);
 
 // Half of the width of a metric's 95 % interval over the first `missions` missions of an arm; NaN where they give none
 // or are not all stored. For stages with a precision (engine/sweep/plan.h).

@@ -6,9 +6,7 @@
 #include <functional>
 #include <set>
 
-#include "engine/store/reader.h"
 #include "engine/sweep/arm_id.h"
-#include "studies/figures/run_source.h"
 #include "studies/report/page_data.h"
 
 namespace ed3r::report {
@@ -84,10 +82,10 @@ std::vector<Choice> Choose(const std::vector<metrics::ArmData>& arms, const std:
 }
 
 // Stages whose missions networks learnt from; none where nothing else was flown.
-std::set<std::string> WarmupStages(const std::string& dir, const std::vector<metrics::ArmData>& arms) {
+std::set<std::string> WarmupStages(std::span<const figures::ArmPlan> plans,
+                                   const std::vector<metrics::ArmData>& arms) {
   std::set<std::string> stages;
-  for (const figures::ArmPlan& plan :
-       figures::ReadArmPlans(store::ResultReader(dir).StoredRecipe().plan_text))
+  for (const figures::ArmPlan& plan : plans)
     if (plan.warmup) stages.insert(plan.stage);
   const bool others = std::any_of(arms.begin(), arms.end(), [&](const metrics::ArmData& arm) {
     return !stages.contains(arm.stage) && !arm.missions.empty();
@@ -98,10 +96,10 @@ std::set<std::string> WarmupStages(const std::string& dir, const std::vector<met
 }  // namespace
 
 std::vector<ChosenMission> ChooseMissions(const Report& report, const RunResults& results,
-                                          const std::string& dir) {
-  const PageMissions missions = ReadPageMissions(report, results, dir);
+                                          std::span<const figures::ArmPlan> plans) {
+  const PageMissions missions = PageMissionsOf(report, results);
   std::vector<ChosenMission> chosen;
-  for (const Choice& choice : Choose(missions.arms, WarmupStages(dir, missions.arms))) {
+  for (const Choice& choice : Choose(missions.arms, WarmupStages(plans, missions.arms))) {
     const metrics::ArmData& arm = missions.arms[choice.arm];
     chosen.push_back({fmt::format("{}/{}/{}", arm.stage, sweep::ArmId{arm.name, missions.variant}.Text(),
                                   missions.numbers[choice.arm][choice.mission]),

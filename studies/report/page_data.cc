@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "engine/core/check.h"
 #include "engine/store/checksums.h"
-#include "engine/store/reader.h"
 #include "engine/sweep/arm_id.h"
 #include "studies/claims/construction.h"
 #include "studies/claims/verdict_tables.h"
@@ -171,40 +169,18 @@ const metrics::ArmData* Find(std::span<const metrics::ArmData> arms, const metri
   return nullptr;
 }
 
-// A mission that came in since the run was loaded is left out.
-std::vector<int> NumbersOf(store::ResultReader& reader, const std::string& stored_name,
-                           const metrics::ArmData& arm) {
-  std::map<std::int64_t, int> by_scenario;
-  const store::RunLayout& layout = reader.Layout();
-  for (std::size_t s = 0; s < layout.stages.size(); ++s)
-    for (std::size_t a = 0; a < layout.stages[s].arms.size(); ++a)
-      if (layout.stages[s].missions > 0 && layout.stages[s].name == arm.stage &&
-          layout.stages[s].arms[a].name == stored_name)
-        reader.ForEachMission(static_cast<int>(s), static_cast<int>(a), store::Steps::kSkip,
-                              [&](const store::StoredMission& mission) {
-                                by_scenario[mission.record.scenario] = mission.id.mission;
-                              });
-  std::vector<int> numbers;
-  for (const mission::MissionRecord& mission : arm.missions) {
-    const auto found = by_scenario.find(mission.scenario);
-    ED3R_CHECK(found != by_scenario.end(), "a stored mission stays stored");
-    numbers.push_back(found->second);
-  }
-  return numbers;
-}
-
 }  // namespace
 
-PageMissions ReadPageMissions(const Report& report, const RunResults& results, const std::string& dir) {
-  store::ResultReader reader(dir);
+PageMissions PageMissionsOf(const Report& report, const RunResults& results) {
   PageMissions page;
   page.variant = report.variant;
   const std::vector<metrics::ArmData> arms = variants::ArmsOfVariant(results.arms, page.variant);
   for (const metrics::ArmMetrics& told : report.told) {
     const metrics::ArmData* arm = Find(arms, told);
     ED3R_CHECK(arm != nullptr, "the missions of an arm that is told");
+    ED3R_CHECK(arm->numbers.size() == arm->missions.size(), "missions of a store");
     page.arms.push_back(*arm);
-    page.numbers.push_back(NumbersOf(reader, sweep::ArmId{arm->name, page.variant}.Text(), *arm));
+    page.numbers.push_back(arm->numbers);
   }
   return page;
 }

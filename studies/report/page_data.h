@@ -17,8 +17,8 @@ struct PageMissions {
   std::string variant;                    // that the store has these arms under; mostly ""
 };
 
-// The missions of the arms told, with their numbers. Throws UserError as LoadRun.
-PageMissions ReadPageMissions(const Report& report, const RunResults& results, const std::string& dir);
+// The missions of the arms told, with their numbers. `results`: of a store (load.h).
+PageMissions PageMissionsOf(const Report& report, const RunResults& results);
 
 struct PageDataInputs {
   const Report& report;

@@ -8,6 +8,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/core/remove_file.h"
 #include "engine/store/checksums.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/paper/arms.h"
@@ -20,14 +21,6 @@ namespace ed3r::report {
 namespace {
 
 namespace fs = std::filesystem;
-
-void WriteTable(const tables::StudyTable& table, const fs::path& folder) {
-  const std::vector<paper::Claim>& claims = paper::PaperClaims();
-  WriteFile(folder / (table.id + ".md"), tables::MarkdownTable(table, claims));
-  WriteFile(folder / (table.id + ".tex"), tables::LatexTable(table, claims));
-  WriteFile(folder / (table.id + ".csv"), tables::CsvTable(table, claims));
-  WriteFile(folder / (table.id + ".json"), tables::JsonTable(table, claims).dump(2) + '\n');
-}
 
 // Whether nothing that departs keeps the claims of this variant from being judged.
 bool MayJudge(const Report& report, const std::string& variant) {
@@ -103,6 +96,10 @@ std::vector<std::string> Report::DepartureNotes() const {
   return DepartureSentences(departures, variant, judging);
 }
 
+std::string ToldVariant(const RunResults& results, const std::string& wanted) {
+  return ChosenVariant(variants::VariantsOf(results.arms), wanted);
+}
+
 std::string VariantNote(const Report& report) {
   if (report.variants.variants.size() < 2) return "";
   return fmt::format(
@@ -122,7 +119,7 @@ Report MakeReport(const RunResults& results, const RunDepartures& departures, Ju
   report.judging = judging;
   report.variants = variants::CompareVariants(
       results.arms, MayJudgeAll(report) ? variants::Verdicts::kJudged : variants::Verdicts::kLeftOut);
-  report.variant = ChosenVariant(report.variants.variants, variant);
+  report.variant = ToldVariant(results, variant);
   const bool variants = !report.variants.variants.empty();
   const std::vector<metrics::ArmData> chosen =
       variants ? variants::ArmsOfVariant(results.arms, report.variant) : std::vector<metrics::ArmData>();
@@ -207,24 +204,65 @@ nlohmann::ordered_json ReportJson(const Report& report) {
   return json;
 }
 
+namespace {
+
+struct NamedText {
+  std::string name, text;
+};
+
+std::vector<NamedText> FilesOf(const Report& report) {
+  const std::vector<paper::Claim>& claims = paper::PaperClaims();
+  std::vector<NamedText> files = {{"report.txt", ReportText(report)},
+                                  {"report.json", ReportJson(report).dump(2) + '\n'},
+                                  {"metrics.csv", tables::ResultCsv(report.arms, claims)},
+                                  {"generalisation.csv", tables::GeneralisationCsv(report.generalisation)},
+                                  {"verdicts.csv", claims::VerdictCsv(report.claims)},
+                                  {"convergence.csv", claims::ConvergenceCsv(report.convergence)},
+                                  {"look_forward.csv", tables::LookForwardCsv(report.look_forward)}};
+  if (report.claims.networks > 1) files.push_back({"by_network.csv", claims::ByNetworkCsv(report.claims)});
+  if (!report.differences.empty())
+    files.push_back({"differences.csv", variants::ArmDifferenceCsv(report.differences)});
+  if (!report.variants.variants.empty()) {
+    files.push_back({"variants.csv", variants::DifferenceCsv(report.variants)});
+    files.push_back({"variant_verdicts.csv", variants::VariantVerdictCsv(report.variants)});
+  }
+  for (const tables::StudyTable& table : report.tables) {
+    const std::string stem = "tables/" + table.id;
+    files.push_back({stem + ".md", tables::MarkdownTable(table, claims)});
+    files.push_back({stem + ".tex", tables::LatexTable(table, claims)});
+    files.push_back({stem + ".csv", tables::CsvTable(table, claims)});
+    files.push_back({stem + ".json", tables::JsonTable(table, claims).dump(2) + '\n'});
+  }
+  return files;
+}
+
+}  // namespace
+
+const std::vector<std::string>& ReportFileNames() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = {"report.txt",      "report.json",         "metrics.csv",
+                                    "verdicts.csv",    "generalisation.csv",  "by_network.csv",
+                                    "convergence.csv", "look_forward.csv",    "differences.csv",
+                                    "variants.csv",    "variant_verdicts.csv"};
+    for (const char* table : {"arms", "thresholds", "ablations", "baselines", "variants"})
+      for (const char* ending : {".md", ".tex", ".csv", ".json"})
+        all.push_back(fmt::format("tables/{}{}", table, ending));
+    return all;
+  }();
+  return names;
+}
+
 void WriteReport(const Report& report, const std::string& dir) {
   const fs::path base(dir);
+  const std::vector<NamedText> files = FilesOf(report);  // before any is touched
+  const std::vector<std::string>& names = ReportFileNames();
   MakeFolder(base / "tables");
-  WriteFile(base / "report.txt", ReportText(report));
-  WriteFile(base / "report.json", ReportJson(report).dump(2) + '\n');
-  WriteFile(base / "metrics.csv", tables::ResultCsv(report.arms, paper::PaperClaims()));
-  WriteFile(base / "generalisation.csv", tables::GeneralisationCsv(report.generalisation));
-  WriteFile(base / "verdicts.csv", claims::VerdictCsv(report.claims));
-  if (report.claims.networks > 1) WriteFile(base / "by_network.csv", claims::ByNetworkCsv(report.claims));
-  WriteFile(base / "convergence.csv", claims::ConvergenceCsv(report.convergence));
-  WriteFile(base / "look_forward.csv", tables::LookForwardCsv(report.look_forward));
-  if (!report.differences.empty())
-    WriteFile(base / "differences.csv", variants::ArmDifferenceCsv(report.differences));
-  if (!report.variants.variants.empty()) {
-    WriteFile(base / "variants.csv", variants::DifferenceCsv(report.variants));
-    WriteFile(base / "variant_verdicts.csv", variants::VariantVerdictCsv(report.variants));
+  for (const std::string& name : names) RemoveFile(base / name);
+  for (const NamedText& file : files) {
+    // What is not on the list would stay beside a later report.
+    ED3R_CHECK(std::find(names.begin(), names.end(), file.name) != names.end(), file.name);
+    WriteFile(base / file.name, file.text);
   }
-  for (const tables::StudyTable& table : report.tables) WriteTable(table, base / "tables");
 }
 
 }  // namespace ed3r::report

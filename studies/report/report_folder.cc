@@ -6,11 +6,10 @@
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
-#include "engine/store/reader.h"
-#include "engine/sweep/arm_id.h"
 #include "studies/figures/draw.h"
 #include "studies/figures/figure_data.h"
 #include "studies/report/html.h"
+#include "studies/report/old_report.h"
 #include "studies/report/page_data.h"
 #include "studies/report/provenance.h"
 #include "studies/report/web_page.h"
@@ -22,28 +21,16 @@ namespace fs = std::filesystem;
 
 constexpr const char* kManifest = "manifest.json";
 
-// Of a sweep with variants: of the one that is told.
-nlohmann::ordered_json FigureData(const Report& report, const RunResults& results, const std::string& dir) {
-  store::ResultReader reader(dir);
-  const std::string variant = report.variant;
-  std::vector<figures::ArmPlan> plans = figures::ReadArmPlans(reader.StoredRecipe().plan_text);
-  std::erase_if(plans,
-                [&](const figures::ArmPlan& plan) { return sweep::ArmId::Of(plan.name).variant != variant; });
-  std::vector<figures::ShownMission> missions = figures::PickMissions(reader, plans);
-  figures::FoundScene found;
-  for (const figures::ArmPlan& plan : plans)
-    if (!missions.empty() && plan.stage == missions.front().stage && plan.name == missions.front().arm)
-      found = figures::FindScene(reader, plan.Setting("mission.world"));
-  for (figures::ArmPlan& plan : plans) plan.name = sweep::ArmId::Of(plan.name).name;
-  for (figures::ShownMission& mission : missions) mission.arm = sweep::ArmId::Of(mission.arm).name;
-  const std::vector<metrics::ArmData> arms = variants::ArmsOfVariant(results.arms, variant);
+nlohmann::ordered_json FigureData(const Report& report, const RunResults& results,
+                                  const figures::RunSource& source) {
+  const std::vector<metrics::ArmData> arms = variants::ArmsOfVariant(results.arms, report.variant);
   return figures::MakeFigureData({.name = results.name,
                                   .arms = arms,
                                   .metrics = report.told,
-                                  .plans = plans,
-                                  .missions = missions,
-                                  .scene = found.scene,
-                                  .scene_note = found.why_not,
+                                  .plans = source.plans,
+                                  .missions = source.missions,
+                                  .scene = source.scene.scene,
+                                  .scene_note = source.scene.why_not,
                                   .variants = &report.variants});
 }
 
@@ -80,34 +67,12 @@ void CheckFolder(const fs::path& folder) {
                   folder.string()));
 }
 
-bool IsPlainName(const std::string& id) {
-  return !id.empty() && id.find('/') == std::string::npos && id.find('\0') == std::string::npos;
-}
-
-// Pictures of an earlier report would be taken for this one's. Only those that a report lists are removed.
-void RemovePictures(const fs::path& folder, const nlohmann::ordered_json& figures) {
-  for (const auto& figure : figures) {
-    if (!figure.is_object() || !figure.contains("id") || !figure["id"].is_string()) continue;
-    const std::string id = figure["id"];
-    std::error_code ignored;
-    for (const char* ending : {".png", ".svg"})
-      if (IsPlainName(id)) fs::remove(folder / (id + ending), ignored);
-  }
-}
-
-void RemoveOldPictures(const fs::path& folder) {
-  std::string text, ignored;
-  if (!TryReadFile((folder / "data.json").string(), kMaxTextBytes, text, ignored)) return;
-  const auto data = nlohmann::ordered_json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (data.is_object() && data.contains("figures")) RemovePictures(folder, data["figures"]);
-}
-
 std::string InteractivePage(const WebBundle& bundle, const PageInputs& plain, const RunResults& results,
                             const nlohmann::ordered_json& figures, const FolderOptions& options) {
   nlohmann::ordered_json broken = nlohmann::ordered_json::array();
   for (const auto& [mission, message] : plain.provenance.broken)
     broken.push_back({{"mission", mission}, {"message", message}});
-  const PageMissions missions = ReadPageMissions(plain.report, results, options.dir);
+  const PageMissions missions = PageMissionsOf(plain.report, results);
   const nlohmann::ordered_json data = MakePageData({.report = plain.report,
                                                     .provenance = plain.provenance,
                                                     .missions = missions,
@@ -128,16 +93,18 @@ FolderResult WriteReportFolder(const Report& report, const RunResults& results,
   const fs::path base(options.out), figures = base / "figures";
   if (!options.force) CheckFolder(base);
   const Provenance& provenance = options.provenance;
+  const nlohmann::ordered_json data = FigureData(report, results, options.source);
   MakeFolder(base);
-  for (const fs::path& folder : {base, base / "tables", figures}) RemoveLeftovers(folder);
-  // First: a report that did not come to its end is known as one.
+  for (const fs::path& folder : {base, base / "tables", figures, base / "missions"}) RemoveLeftovers(folder);
+  RemoveOldReport(base);
+  // First: a report that did not come to its end is known as one. index.html is missing then, which comes last.
   WriteFile(base / kManifest, ManifestJson(provenance).dump(2) + '\n');
   WriteReport(report, options.out);
   MakeFolder(figures);
-  const nlohmann::ordered_json data = FigureData(report, results, options.dir);
-  RemoveOldPictures(figures);
   RemovePictures(figures, data.at("figures"));
   WriteFile(figures / "data.json", data.dump() + '\n');
+  if (!options.mission_pages.empty()) MakeFolder(base / "missions");
+  for (const auto& [name, page] : options.mission_pages) WriteFile(base / name, page);
   FolderResult result;
   if (!options.figures) {
     result.note = "figures not drawn (--no-figures)";

@@ -21,6 +21,9 @@ struct FoundBundle {
 // built from.
 FoundBundle FindWebBundle(const std::string& name);
 
+// What the title of a mission's page ends with, after STAGE/ARM/NUMBER.
+inline constexpr char kMissionTitle[] = " – ED³R mission";
+
 // `plain` is what browsers without scripts show, HTML already. Data and title are escaped here.
 std::string SelfContainedPage(const std::string& title, const WebBundle& bundle,
                               const nlohmann::ordered_json& data, const std::string& plain);

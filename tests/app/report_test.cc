@@ -136,6 +136,54 @@ TEST_F(ReportTest, PicturesOfAnEarlierReportDoNotStayAndThoseOfOthersDo) {
   EXPECT_EQ(ReadAll(Out() / "holiday.png"), "mine");
 }
 
+TEST_F(ReportTest, MissionPagesOfAnEarlierReportDoNotStayAndThoseOfOthersDo) {
+  ASSERT_EQ(Report("--no-figures --no-missions").status, 0);
+  const fs::path missions = Out() / "missions";
+  fs::create_directories(missions);
+  std::ofstream(missions / "online-ecd2r-7.html") << "<title>online/ecd2r/7 – ED³R mission</title>";
+  std::ofstream(missions / "best.html") << "<title>online/ecd2r/7 – ED³R mission</title>";
+  ASSERT_EQ(Report("--no-figures --no-missions").status, 0);
+  EXPECT_FALSE(fs::exists(missions / "online-ecd2r-7.html"));
+  EXPECT_TRUE(fs::exists(missions / "best.html"));
+}
+
+TEST_F(ReportTest, OneThatDidNotComeToItsEndHasNoPageAndNothingOfBefore) {
+  ASSERT_EQ(Report("--no-figures --no-missions").status, 0);
+  std::ofstream(Out() / "differences.csv") << "of before";
+  fs::remove(Out() / "verdicts.csv");
+  fs::create_directories(Out() / "verdicts.csv");  // in the way
+  EXPECT_EQ(Report("--no-figures --no-missions").status, 2);
+  for (const char* name : {"index.html", "differences.csv", "look_forward.csv", "figures/data.json"})
+    EXPECT_FALSE(fs::exists(Out() / name)) << name;
+  fs::remove(Out() / "verdicts.csv");
+  EXPECT_EQ(Report("--no-figures --no-missions").status, 0) << "its manifest says that it is a report";
+}
+
+// Pictures are drawn between what figures and what the page tell.
+TEST_F(ReportTest, IsOfOneStateThoughTheRunIsReplacedMeanwhile) {
+  const fs::path run = out_ / "run", other = out_ / "other";
+  fs::create_directories(run);
+  fs::copy_file(*scratch_ / "run" / "results.sqlite", run / "results.sqlite");
+  ASSERT_EQ(Ed3r(fmt::format("run {}/sweeps/rbs.yaml --missions 3 --quiet --out {}", ED3R_SOURCE_DIR,
+                             other.string()))
+                .status,
+            0);
+  std::ofstream(out_ / "python") << "#!/bin/sh\nmv " << (other / "results.sqlite").string() << ' '
+                                 << (run / "results.sqlite").string() << '\n';
+  fs::permissions(out_ / "python", fs::perms::owner_all);
+  const CommandResult result =
+      Ed3r(fmt::format("report {} --no-missions --out {}", run.string(), Out().string()),
+           "ED3R_WEB=" + (out_ / "web").string() + " ED3R_PYTHON=" + (out_ / "python").string());
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string page = ReadAll(Out() / "index.html");
+  const std::string opening = "<script type=\"application/json\" id=\"page-data\">";
+  const auto begin = page.find(opening) + opening.size();
+  const auto data = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  EXPECT_EQ(data.at("points").at(0).at("number").size(), 24u);
+  EXPECT_EQ(data.at("run").at("missions"), 24);
+  EXPECT_EQ(nlohmann::json::parse(Ed3r("digest --json " + run.string()).out).at("missions"), 3);
+}
+
 TEST_F(ReportTest, AFolderOfSomebodyIsLeftAloneWithoutForce) {
   fs::create_directories(Out());
   std::ofstream(Out() / "thesis.txt") << "mine";

@@ -31,6 +31,21 @@ TEST(ReaderTest, MissionsComeInPlanOrderWhateverTheOrderOfArrival) {
   EXPECT_EQ(reader.Stored(), all);
 }
 
+TEST(ReaderTest, AFileThatTookThePlaceOfTheOneThatIsReadIsTold) {
+  const TempDir temp;
+  WriteStore(temp / "run", {{2, 1, 17}});
+  WriteStore(temp / "other", {{2, 1, 17}});
+  ResultReader reader(temp / "run");
+  reader.CheckNotReplaced();
+  std::filesystem::remove(temp / "run/results.sqlite");
+  reader.CheckNotReplaced();  // nothing that could be taken for it
+  std::filesystem::rename(temp / "other/results.sqlite", temp / "run/results.sqlite");
+  EXPECT_EQ(UserErrorOf([&] { reader.CheckNotReplaced(); }),
+            temp / "run/results.sqlite" +
+                ": was replaced since it was opened; open it again (the same command does)");
+  EXPECT_EQ(reader.CountMissions(), 1);
+}
+
 TEST(ReaderTest, OneArmAlone) {
   const TempDir temp;
   WriteStore(temp / "run", AllMissions(TestLayout()));

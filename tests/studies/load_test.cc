@@ -107,7 +107,8 @@ TEST(LoadWholeTest, AllIsOfOneMoment) {
   });
   int looks = 0;
   for (; !ended || looks == 0; ++looks) {
-    const report::WholeRun whole = report::LoadWhole(temp / "run", "called");
+    store::ResultReader reader(temp / "run");
+    const report::WholeRun whole = report::LoadWhole(reader, "called");
     const auto missions = static_cast<std::int64_t>(whole.results.arms[2].missions.size());
     EXPECT_EQ(whole.provenance.stored, missions);
     EXPECT_EQ(whole.results.arms[2].missing, 150 - missions);
@@ -115,7 +116,8 @@ TEST(LoadWholeTest, AllIsOfOneMoment) {
     EXPECT_EQ(whole.provenance.dir, "called");
   }
   writer.join();
-  const report::WholeRun whole = report::LoadWhole(temp / "run", "called");
+  store::ResultReader reader(temp / "run");
+  const report::WholeRun whole = report::LoadWhole(reader, "called");
   const report::RunResults again = report::LoadRun(temp / "run");
   ASSERT_EQ(whole.results.arms[2].missions.size(), again.arms[2].missions.size());
   EXPECT_TRUE(whole.results.arms[2].missions[7].steps.empty());

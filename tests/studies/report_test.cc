@@ -95,6 +95,22 @@ TEST_F(ReportFilesTest, AreWrittenAndReplaced) {
     EXPECT_FALSE(Content(dir_ / "deep/tables" / ("arms." + std::string(ending))).empty()) << ending;
 }
 
+// Tables of an earlier report would be taken for this one's.
+TEST_F(ReportFilesTest, ThoseOfAnEarlierReportGoAndThoseOfOthersStay) {
+  fs::create_directories(dir_ / "tables");
+  const std::vector<std::string> stale = {"by_network.csv",       "differences.csv",
+                                          "variants.csv",         "variant_verdicts.csv",
+                                          "tables/baselines.tex", "tables/variants.json"};
+  const std::vector<std::string> others = {"notes.csv", "tables/mine.md"};
+  for (const std::vector<std::string>* names : {&stale, &others})
+    for (const std::string& name : *names) std::ofstream(dir_ / name) << "of before";
+  report::Report report = report::MakeReport(OneArm(), {});
+  report.differences.clear();
+  report::WriteReport(report, dir_.string());
+  for (const std::string& name : stale) EXPECT_FALSE(fs::exists(dir_ / name)) << name;
+  for (const std::string& name : others) EXPECT_EQ(Content(dir_ / name), "of before");
+}
+
 TEST_F(ReportFilesTest, UnwritablePlacesAreUserErrors) {
   fs::create_directories(dir_ / "report.txt");  // a folder in the file's place
   std::ofstream(dir_ / "report.txt" / "x") << "x";
