@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "engine/core/check.h"
+#include "engine/core/end_mark.h"
 #include "engine/core/file.h"
 #include "engine/core/message.h"
 #include "engine/core/parse_number.h"
@@ -184,6 +185,8 @@ YamlFile ReadYamlFile(const std::string& file) { return ParseYaml(file, ReadFile
 
 YamlFile ParseYaml(const std::string& file, const std::string& text) {
   CheckText(file, text);
+  if (IsCutShort(text))
+    FailAt(file, fmt::format("is cut short: its last line, '{}', is missing; write it anew", kEndMark));
   TreeBuilder tree(file);
   try {
     std::istringstream in(text);

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "engine/core/check.h"
+#include "engine/core/end_mark.h"
 #include "engine/core/file.h"
 
 namespace ed3r::fit {
@@ -254,15 +255,16 @@ std::string FittedYaml(const FitReport& report) {
   for (const ModelReport& model : report.models)
     text += fmt::format(" {} {:.2f} %{}", model.name, model.held_out.median_error_pct,
                         &model == &report.models.back() ? ".\n" : ",");
+  text += fmt::format("{}\n", kEndAnnounced);
   std::string robot_text, energy_text;
   const std::string paper_name = PaperFormOf(report);
   for (const ModelReport& model : report.models)
     if (model.name == paper_name || model.name == "momentum")
       AppendParameters(model, robot_text, energy_text);
   text += "robot:\n" + AirframeText(report) + robot_text;
-  return text + fmt::format("energy:\n  model: {}\n{}{}",
-                            FliesPaper(report, paper_name) ? "paper" : "momentum",
-                            paper_name == "paper-climb" ? "  vertical_form: climb\n" : "", energy_text);
+  return text +
+         fmt::format("energy:\n  model: {}\n{}{}{}\n", FliesPaper(report, paper_name) ? "paper" : "momentum",
+                     paper_name == "paper-climb" ? "  vertical_form: climb\n" : "", energy_text, kEndMark);
 }
 
 void WriteFitOutputs(const FitReport& report, const std::string& directory) {

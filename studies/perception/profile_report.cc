@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "engine/core/end_mark.h"
 #include "studies/perception/profile_fit.h"
 
 namespace ed3r::perception_fit {
@@ -95,7 +96,8 @@ nlohmann::ordered_json ProfileFitJson(const ProfileFit& fit) {
 
 std::string ProfileFitYaml(const ProfileFit& fit, const std::string& made_from) {
   std::string yaml =
-      fmt::format("# Fast tier fitted to the pixel tier by 'ed3r fit --perception' from {}.\n", made_from);
+      fmt::format("# Fast tier fitted to the pixel tier by 'ed3r fit --perception' from {}.\n{}\n", made_from,
+                  kEndAnnounced);
   yaml += fmt::format("perception:\n  fire_weight: 1\n  smoke_weight: {:.4g}\n  distractor_weight: {:.4g}\n",
                       fit.smoke_weight, fit.distractor_weight);
   for (const auto& [name, response] : {std::pair{"full", fit.full}, std::pair{"quantized", fit.quantized}}) {
@@ -105,7 +107,7 @@ std::string ProfileFitYaml(const ProfileFit& fit, const std::string& made_from) 
         "{:.4g}, distractor_gain: {:g}}}\n",
         name, r.half_signal, r.slope, r.ceiling, r.view_sigma, r.frame_sigma, r.distractor_gain);
   }
-  return yaml;
+  return yaml + kEndMark + "\n";
 }
 
 std::string LooksCsv(std::span<const PeriodLook> looks, const ProfileFit& fit) {

@@ -11,6 +11,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/core/yaml_reader.h"
 #include "studies/fit/fit_text.h"
 
 namespace ed3r::fit {
@@ -113,6 +114,26 @@ TEST_F(M100Test, JsonAndParameterFileSayTheSame) {
       << "a lower bound that the data hold on to";
   EXPECT_FALSE(yaml["robot"]["drag_vertical"]) << "an upper bound is no value";
   EXPECT_FALSE(Model("momentum-isolated").determination.Usable()) << "no efficiency is high enough";
+}
+
+// Wherever it ends before its end, it is refused or holds nothing.
+TEST_F(M100Test, AParameterFileThatWasCutIsRefused) {
+  const std::string whole = FittedYaml(*report_);
+  const std::size_t first_key = whole.find("\nrobot:") + 1;
+  EXPECT_EQ(ParseYaml("x.yaml", whole).root.entries.size(), 2u);
+  for (std::size_t bytes = 0; bytes + 1 < whole.size(); ++bytes) {
+    const std::string cut = whole.substr(0, bytes);
+    try {
+      EXPECT_EQ(ParseYaml("x.yaml", cut).root.kind, YamlNode::Kind::kNull) << cut;
+      EXPECT_LT(bytes, first_key);
+    } catch (const UserError& error) {
+      EXPECT_STREQ(error.what(),
+                   "x.yaml: is cut short: its last line, '# end of file', is missing; write it anew");
+    }
+  }
+  std::string by_hand = whole.substr(0, first_key) + "robot:\n  mass_kg: 4\n# end of file  \r\n# mine\n";
+  EXPECT_EQ(ParseYaml("x.yaml", by_hand).root.entries.size(), 1u);
+  EXPECT_EQ(ParseYaml("x.yaml", "robot:\n  mass_kg: 4\n").root.entries.size(), 1u) << "announces nothing";
 }
 
 TEST_F(M100Test, TheShippedAirframeIsWhatAFitWrites) {
