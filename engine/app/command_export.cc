@@ -13,6 +13,7 @@
 #include "engine/core/check.h"
 #include "engine/core/csv_table.h"
 #include "engine/core/file.h"
+#include "engine/core/new_folder.h"
 #include "engine/core/parse_number.h"
 #include "engine/rfnn/model_file.h"
 #include "engine/rfnn/onnx_network.h"
@@ -84,7 +85,7 @@ void ExportNetworks(store::ResultReader& reader, const std::string& dir,
                     const std::filesystem::path& folder) {
   const store::FlownNetworks flown = reader.Networks();
   if (flown.files.empty()) throw UserError(fmt::format("{}: --networks: no trained network flew here", dir));
-  MakeFolder(folder);
+  const NewFolder made(folder);
   const std::map<std::string, std::string> names = FileNames(flown);
   std::set<std::string> done;
   for (const store::NetworkUse& use : flown.uses) {

@@ -14,6 +14,7 @@
 #include "engine/core/check.h"
 #include "engine/core/csv_table.h"
 #include "engine/core/file.h"
+#include "engine/core/new_folder.h"
 #include "engine/store/columns.h"
 #include "engine/store/words.h"
 
@@ -157,7 +158,7 @@ std::unique_ptr<TableFile> Open(ExportFormat format, const std::filesystem::path
 
 std::vector<ExportedTable> ExportTables(store::ResultReader& reader, ExportFormat format,
                                         const std::filesystem::path& folder) {
-  MakeFolder(folder);
+  const NewFolder made(folder);  // a damaged run is refused below
   std::vector<sweep::RunId> counted;
   std::int64_t timesteps = 0;
   reader.ForEachMission(store::Steps::kSkip, [&](const store::StoredMission& mission) {

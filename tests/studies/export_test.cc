@@ -69,5 +69,18 @@ TEST(ExportTest, ARunThatGoesOnIsExportedAsItWasCounted) {
   for (int run = 0; run < 8; ++run) ExportWhileItFlies(temp / fmt::format("run{}", run), temp / "out");
 }
 
+TEST(ExportTest, ADamagedRunLeavesNoFolder) {
+  const store::TempDir temp;
+  store::WriteStore(temp / "run", store::AllMissions(store::TestLayout()));
+  store::Connection(temp / "run/results.sqlite", store::Connection::Access::kReadWrite)
+      .Execute("UPDATE timesteps SET total_j = 1 WHERE k = 1");
+  store::ResultReader reader(temp / "run");
+  EXPECT_THROW(ExportTables(reader, ExportFormat::kCsv, temp / "new/tables"), UserError);
+  EXPECT_FALSE(fs::exists(temp / "new"));
+  fs::create_directories(temp / "there");
+  EXPECT_THROW(ExportTables(reader, ExportFormat::kCsv, temp / "there"), UserError);
+  EXPECT_TRUE(fs::exists(temp / "there"));
+}
+
 }  // namespace
 }  // namespace ed3r::exports
