@@ -40,6 +40,7 @@ void AddRow(std::int64_t arm, std::int64_t mission, const Record& record, std::v
 }  // namespace
 
 std::vector<ArmCount> RunReader::Arms() {
+  reader_.CheckNotReplaced();
   std::vector<ArmCount> arms;
   for (const store::ArmStatus& arm : reader_.Status())
     arms.push_back({arm.stage, arm.arm, arm.planned, arm.done, arm.failed});
@@ -84,6 +85,7 @@ void RunReader::CheckOneStage(const std::string& arm, std::vector<sweep::RunId>&
 }
 
 std::vector<ResultColumn> RunReader::Missions(const std::string& arm) {
+  reader_.CheckNotReplaced();
   std::vector<ResultColumn> table = EmptyTable<mission::MissionRecord>();
   for (const sweep::RunId& id : Selected(arm))
     reader_.ForEachMission(id.stage, id.arm, store::Steps::kSkip, [&](const store::StoredMission& mission) {
@@ -93,6 +95,7 @@ std::vector<ResultColumn> RunReader::Missions(const std::string& arm) {
 }
 
 std::vector<ResultColumn> RunReader::Timesteps(const std::string& arm) {
+  reader_.CheckNotReplaced();
   std::vector<ResultColumn> table = EmptyTable<mission::TimestepRecord>();
   for (const sweep::RunId& id : Selected(arm))
     reader_.ForEachTimestep(id.stage, id.arm, [&](int mission, const mission::TimestepRecord& step) {
@@ -102,12 +105,16 @@ std::vector<ResultColumn> RunReader::Timesteps(const std::string& arm) {
 }
 
 std::string RunReader::ReportText() {
-  return report::ReportJson(
-             report::MakeReport(report::LoadRun(reader_.dir()), report::ReadDepartures(reader_)))
+  reader_.CheckNotReplaced();
+  const store::Transaction moment = reader_.Moment();
+  return report::ReportJson(report::MakeReport(report::LoadRun(reader_), report::ReadDepartures(reader_)))
       .dump();
 }
 
-std::string RunReader::Digest() { return store::DigestOf(reader_); }
+std::string RunReader::Digest() {
+  reader_.CheckNotReplaced();
+  return store::DigestOf(reader_);
+}
 
 std::map<std::string, std::map<std::int64_t, std::string>> CodeNames() {
   std::map<std::string, std::map<std::int64_t, std::string>> names;

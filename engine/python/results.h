@@ -25,7 +25,7 @@ struct ArmCount {
 };
 
 // Reads a run directory; every mission is compared with its checksum. Shards that are not merged are joined when it is opened.
-// Throws UserError.
+// Throws UserError, also where the directory holds another run than when it was opened.
 class RunReader {
  public:
   explicit RunReader(const std::string& dir) : dir_(dir), run_(dir), reader_(run_.dir()) {}

@@ -5,6 +5,7 @@ import csv
 import os
 import pathlib
 import re
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -264,6 +265,24 @@ class PythonTest(unittest.TestCase):
         self.assertEqual(list(run.missions("b/x")["stage"]), ["b", "b"])
         self.assertEqual(list(run.missions("z")["arm"]), ["z"])
         self.assertEqual(list(run.missions()["stage"]), ["a", "a", "b", "b", "b", "b"])
+
+    def test_a_run_that_was_flown_anew_is_opened_again(self):
+        out = self.root / "anew"
+
+        def fly(mass):
+            shutil.rmtree(out, ignore_errors=True)
+            subprocess.run([os.environ["ED3R"], "run", SOURCE / "sweeps" / "rbs.yaml", "--missions", "2", "--quiet",
+                            "--set", f"robot.mass_kg={mass}", "--out", out], check=True)
+            return ed3r.Run(out)
+
+        run = fly(2.0)
+        digest = run.digest()
+        again = fly(2.4)
+        for ask in (run.missions, run.steps, run.report, run.digest, lambda: run.arms):
+            with self.assertRaisesRegex(ed3r.UserError, "results.sqlite: was replaced since it was opened; open it again"):
+                ask()
+        self.assertNotEqual(again.digest(), digest)
+        self.assertEqual(again.report()["arms"]["rbs"]["missions"], 2)
 
     def test_shards_count_as_in_the_program(self):
         out = self.root / "sharded"
