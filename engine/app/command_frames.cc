@@ -12,6 +12,8 @@
 #include "engine/app/settings.h"
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/core/new_folder.h"
+#include "engine/core/remove_file.h"
 #include "engine/core/sha256.h"
 #include "engine/core/version.h"
 #include "engine/perception/render/pictures.h"
@@ -96,6 +98,23 @@ class FrameFile {
   Sha256 hash_;
 };
 
+// "view_00012.png", "view_00012_large.png"
+bool IsPictureName(std::string_view name) {
+  constexpr std::string_view kBegin = "view_", kEnd = ".png", kLargeEnd = "_large.png";
+  if (!name.starts_with(kBegin) || !name.ends_with(kEnd)) return false;
+  name.remove_prefix(kBegin.size());
+  name.remove_suffix(name.ends_with(kLargeEnd) ? kLargeEnd.size() : kEnd.size());
+  return name.size() >= 5 && name.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// Of another set, whose views they show.
+void RemovePictures(const fs::path& folder) {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (IsPictureName(entry.path().filename().string())) found.push_back(entry.path());
+  for (const fs::path& picture : found) RemoveFile(picture);
+}
+
 class DataSet {
  public:
   DataSet(const Options& options, const Config& config)
@@ -119,7 +138,7 @@ class DataSet {
 
   void Write() {
     const fs::path out(options_.out);
-    MakeFolder(out);
+    const NewFolder made(out);
     FrameFile frames(out / "frames.npy", options_.views * options_.frames, size_);
     std::string labels =
         "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label,tilt_deg,"
@@ -132,7 +151,9 @@ class DataSet {
       if (WriteView(looks, kept, frames, labels)) ++kept;
     }
     // Of an interrupted overwriting nothing can be read: labels are missing, or the manifest is of the set before.
-    fs::remove(out / "labels.csv");
+    RemoveFile(out / "labels.csv");
+    RemovePictures(out);
+    for (const int view : pictured_) WritePictures(view);
     const std::string of_frames = frames.Close();
     WriteFile(out / "labels.csv", labels);
     Sha256 of_labels;
@@ -186,16 +207,21 @@ class DataSet {
                       truth.fire_px, truth.smoke_px, truth.occluded, fire ? 1 : 0,
                       plan.pose.tilt_rad * 180.0 / std::numbers::pi, weather.haze_range_m,
                       std::asin(weather.to_sun.z()) * 180.0 / std::numbers::pi, weather.cloud_cover, props);
-    if (kept < options_.pictures) WritePictures(view, sensed.frames, renderer, plan.pose);
+    if (kept < options_.pictures) pictured_.push_back(view);
     return true;
   }
 
-  void WritePictures(int view, const perception::FrameStack& frames, const perception::Renderer& renderer,
-                     const robot::Pose& pose) const {
+  // Rendered once more, as they are written when nothing can be refused any more.
+  void WritePictures(int view) const {
+    const auto number = static_cast<std::uint32_t>(view);
+    const perception::ViewPlan plan = perception::PlanView(scenes_, config_, options_.seed, number);
+    const perception::Renderer renderer(scenes_[static_cast<std::size_t>(plan.world)], plan.site,
+                                        config_.perception, config_.sensing, options_.seed, number);
+    const perception::FrameStack frames = renderer.Sense(plan.pose, 1, numbers_, size_).frames;
     const std::string stem = (fs::path(options_.out) / fmt::format("view_{:05}", view)).string();
     perception::WriteFrame(frames, 0, stem + ".png", size_.width_px <= 240 ? kEnlarged : 1);
     const int first[] = {0};
-    perception::WriteFrame(renderer.Sense(pose, 1, first, kLarge).frames, 0, stem + "_large.png");
+    perception::WriteFrame(renderer.Sense(plan.pose, 1, first, kLarge).frames, 0, stem + "_large.png");
   }
 
   void WriteManifest(const fs::path& out, int looks, const std::string& of_frames,
@@ -231,6 +257,7 @@ class DataSet {
   std::vector<std::shared_ptr<const perception::TraceScene>> scenes_;
   perception::DetectorPair detectors_;  // of --wrong-by
   std::vector<int> numbers_;
+  std::vector<int> pictured_;  // views
   int with_fire_ = 0;
 };
 

@@ -12,6 +12,7 @@
 #include "engine/core/check.h"
 #include "engine/core/end_mark.h"
 #include "engine/core/file.h"
+#include "engine/core/remove_file.h"
 
 namespace ed3r::fit {
 namespace {
@@ -270,13 +271,18 @@ std::string FittedYaml(const FitReport& report) {
 void WriteFitOutputs(const FitReport& report, const std::string& directory) {
   MakeFolder(directory);
   const std::filesystem::path path(directory);
+  // Of another fit, they would be taken for pictures of this one.
+  for (const char* picture : {"fit_residuals", "fit_energy", "fit_hover"})
+    for (const char* ending : {".png", ".svg"}) RemoveFile(path / fmt::format("{}{}", picture, ending));
+  // The report comes last: where it is, all is of its fit.
+  for (const char* name : {"report.txt", "plot.log"}) RemoveFile(path / name);
   std::ostringstream text;
   PrintReport(report, text);
-  WriteFile(path / "report.txt", text.str());
   WriteFile(path / "fit.json", ToJson(report).dump(1) + "\n");
   WriteFile(path / "fitted.yaml", FittedYaml(report));
   WriteFile(path / "flights.csv", FlightsCsv(report));
   WriteFile(path / "rows.csv", RowsCsv(report));
+  WriteFile(path / "report.txt", text.str());
 }
 
 }  // namespace ed3r::fit

@@ -82,6 +82,20 @@ TEST(FramesCommand, WritesAnArrayLabelsAndAManifestThatAgree) {
   EXPECT_EQ(ReadAll(again / "labels.csv"), ReadAll(out / "labels.csv"));
 }
 
+TEST(FramesCommand, PicturesOfAnEarlierSetDoNotStay) {
+  const ScratchFolder scratch;
+  const std::filesystem::path out = scratch / "set";
+  const std::string size = "--views 4 --frames 1 --size 64x36 ";
+  ASSERT_EQ(Ed3r(Frames(out, size + "--seed 11 --pictures 2")).status, 0);
+  ASSERT_TRUE(std::filesystem::exists(out / "view_00001_large.png"));
+  std::ofstream(out / "view_mine.png") << "mine";
+  ASSERT_EQ(Ed3r(Frames(out, size + "--seed 12 --pictures 1")).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(out / "view_00000.png"));
+  for (const char* name : {"view_00001.png", "view_00001_large.png"})
+    EXPECT_FALSE(std::filesystem::exists(out / name)) << name;
+  EXPECT_EQ(ReadAll(out / "view_mine.png"), "mine");
+}
+
 // The same views as without the option, less those that are judged rightly.
 TEST(FramesCommand, KeepsOnlyTheViewsThatADetectorMisjudges) {
   const ScratchFolder scratch;

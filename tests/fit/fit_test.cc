@@ -136,6 +136,19 @@ TEST_F(M100Test, AParameterFileThatWasCutIsRefused) {
   EXPECT_EQ(ParseYaml("x.yaml", "robot:\n  mass_kg: 4\n").root.entries.size(), 1u) << "announces nothing";
 }
 
+TEST_F(M100Test, PicturesOfAnotherFitDoNotStay) {
+  const std::string folder = testing::TempDir() + "fit_outputs/";
+  std::filesystem::create_directories(folder);
+  for (const char* name : {"fit_energy.png", "fit_hover.svg", "plot.log", "mine.png"})
+    std::ofstream(folder + name) << "of before";
+  WriteFitOutputs(*report_, folder);
+  for (const char* name : {"fit_energy.png", "fit_hover.svg", "plot.log"})
+    EXPECT_FALSE(std::filesystem::exists(folder + name)) << name;
+  for (const char* name : {"mine.png", "report.txt", "fit.json", "fitted.yaml", "flights.csv", "rows.csv"})
+    EXPECT_TRUE(std::filesystem::exists(folder + name)) << name;
+  std::filesystem::remove_all(folder);
+}
+
 TEST_F(M100Test, TheShippedAirframeIsWhatAFitWrites) {
   std::string written = FittedYaml(*report_);
   const std::string source =
