@@ -58,7 +58,7 @@ bool IsPicture(const fs::path& path) {
 // Against what the set's manifest says of the file, where it says anything: sets of others have none.
 void CheckOfManifest(const nlohmann::json& manifest, const char* key, const std::string& file,
                      const std::string& bytes) {
-  const auto said = manifest.is_object() ? manifest.find(key) : manifest.end();
+  const auto said = manifest.find(key);
   if (said == manifest.end()) return;
   Sha256 sha;
   sha.Update(bytes);
@@ -71,10 +71,14 @@ void CheckOfManifest(const nlohmann::json& manifest, const char* key, const std:
 
 nlohmann::json ReadManifest(const std::string& folder) {
   const std::string path = (fs::path(folder) / "manifest.json").string();
-  if (!fs::exists(path)) return nlohmann::json::object();
+  std::error_code error;  // a link that leads nowhere is no missing manifest
+  if (!fs::exists(fs::symlink_status(path, error))) return nlohmann::json::object();
   nlohmann::json manifest = nlohmann::json::parse(ReadFile(path, kMaxTextBytes), nullptr, false);
   if (manifest.is_discarded())
     throw UserError(fmt::format("{}: no JSON; take it away to read the set without", path));
+  if (!manifest.is_object())
+    throw UserError(fmt::format("{}: is {}, not a JSON object; take it away to read the set without", path,
+                                manifest.type_name()));
   return manifest;
 }
 

@@ -95,6 +95,11 @@ TEST_F(FrameSetTest, RefusesFilesOfAnotherManifest) {
   EXPECT_EQ(ReadFrameSet(folder_).labels.size(), 2u) << "a manifest of somebody else's";
   std::ofstream(folder_ / "manifest.json") << "none";
   ExpectRefusal("manifest.json: no JSON");
+  std::ofstream(folder_ / "manifest.json") << "[]";
+  ExpectRefusal("manifest.json: is array, not a JSON object; take it away to read the set without");
+  fs::remove(folder_ / "manifest.json");
+  fs::create_symlink(folder_ / "nowhere", folder_ / "manifest.json");
+  ExpectRefusal("manifest.json: cannot be read: No such file or directory");
 }
 
 TEST_F(FrameSetTest, RefusesLabelsWithoutAColumn) {
