@@ -127,6 +127,18 @@ void Write(const std::vector<schedule::BatchFile>& files, const fs::path& folder
   }
 }
 
+// The scripts fly what they were written for, whatever is asked for now; "" where that is the same.
+std::string OtherSweep(const fs::path& folder, const SweepArguments& sweep) {
+  const std::string opening = "\nsweep=(", words = schedule::ShellWords(SweepWords(sweep));
+  const std::string common = (folder / "common.sh").string(), text = ReadFile(common);
+  const std::size_t begin = text.find(opening), end = text.find('\n', begin + 1);
+  if (begin == std::string::npos) return "";
+  std::string there = text.substr(begin + opening.size(), end - begin - opening.size());
+  if (there.ends_with(')')) there.pop_back();
+  if (there == words) return "";
+  return fmt::format("{}: its tasks fly '{}', not '{}' as asked for here", common, there, words);
+}
+
 // How many shards the scripts in the folder divide a stage into.
 std::int64_t ShardsOfScripts(const fs::path& folder) {
   const std::string common = (folder / "common.sh").string();
@@ -173,6 +185,11 @@ int TellMissing(const sweep::SweepPlan& plan, const Options& options, const fs::
   if (owed.step == 0) {
     fmt::print("{}: nothing is owed\n", run_dir);
     return kDone;
+  }
+  if (const std::string other = OtherSweep(folder, options.sweep); !other.empty()) {
+    if (options.submit)
+      throw UserError(other + "; give the same sweep, or write the scripts anew with --force");
+    Tell("note: {}", other);
   }
   const schedule::BatchStep& step = steps[static_cast<std::size_t>(owed.step) - 1];
   fmt::print("{}: step {} on", run_dir, step.name);

@@ -305,6 +305,25 @@ TEST_F(PiecesTest, PartsOfAnotherPlanAreToldOrRefused) {
   EXPECT_EQ(Ed3r("digest " + mixed).status, 2);
 }
 
+// What is owed is of the sweep that is asked for, and what would fly it of the one that the scripts were written for.
+TEST_F(PiecesTest, ScriptsOfAnotherSweepAreTold) {
+  const std::string sweep = Write(kStages);
+  const std::string slurm = fmt::format("slurm {} --out {} --cache {} --time 1-0", sweep, Run(), Cache());
+  ExpectDone(Ed3r(slurm + " --seed 3"));
+  EXPECT_EQ(Ed3r(slurm + " --seed 3 --missing").err, "");
+  const std::string told = fmt::format(
+      "{0}/slurm/common.sh: its tasks fly '{1} --seed 3', not '{1} --seed 4' as asked "
+      "for here",
+      Run(), sweep);
+  const CommandResult missing = Ed3r(slurm + " --seed 4 --missing");
+  ExpectDone(missing);
+  EXPECT_EQ(missing.err, "note: " + told + "\n");
+  EXPECT_TRUE(Says(missing.out, "step 1-warmup on")) << missing.out;
+  const CommandResult refused = Ed3r(slurm + " --seed 4 --missing --submit");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.err, told + "; give the same sweep, or write the scripts anew with --force\n");
+}
+
 TEST_F(PiecesTest, WhatCannotBeIsRefused) {
   const std::string sweep = Write(kStages);
   const auto refusal = [&](const std::string& command) {
