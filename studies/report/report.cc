@@ -8,7 +8,6 @@
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
-#include "engine/core/remove_file.h"
 #include "engine/store/checksums.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/paper/arms.h"
@@ -257,7 +256,6 @@ void WriteReport(const Report& report, const std::string& dir) {
   const std::vector<NamedText> files = FilesOf(report);  // before any is touched
   const std::vector<std::string>& names = ReportFileNames();
   MakeFolder(base / "tables");
-  for (const std::string& name : names) RemoveFile(base / name);
   for (const NamedText& file : files) {
     // What is not on the list would stay beside a later report.
     ED3R_CHECK(std::find(names.begin(), names.end(), file.name) != names.end(), file.name);

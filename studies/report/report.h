@@ -73,7 +73,7 @@ nlohmann::ordered_json ReportJson(const Report& report);
 
 // Writes report.txt, report.json, metrics.csv, generalisation.csv, verdicts.csv, convergence.csv, look_forward.csv, where several networks flew
 // by_network.csv, where arms are compared differences.csv, where there are variants variants.csv and variant_verdicts.csv, and tables/ID.md, .tex, .csv and .json of each table into `dir`, which it makes
-// if it has to; those that it does not write are taken away, which may be of an earlier report. Throws UserError when it cannot.
+// if it has to; each file is replaced whole or left as it was. Throws UserError when it cannot.
 void WriteReport(const Report& report, const std::string& dir);
 
 // All that WriteReport may write, below its folder.

@@ -6,6 +6,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/core/remove_file.h"
 #include "studies/figures/draw.h"
 #include "studies/figures/figure_data.h"
 #include "studies/report/html.h"
@@ -96,7 +97,8 @@ FolderResult WriteReportFolder(const Report& report, const RunResults& results,
   const nlohmann::ordered_json data = FigureData(report, results, options.source);
   MakeFolder(base);
   for (const fs::path& folder : {base, base / "tables", figures, base / "missions"}) RemoveLeftovers(folder);
-  RemoveOldReport(base);
+  if (IsReport(base)) RemoveOldReport(base);  // in a folder of somebody's such names are his
+  RemoveFile(base / "index.html");
   // First: a report that did not come to its end is known as one. index.html is missing then, which comes last.
   WriteFile(base / kManifest, ManifestJson(provenance).dump(2) + '\n');
   WriteReport(report, options.out);

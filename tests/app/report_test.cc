@@ -193,9 +193,12 @@ TEST_F(ReportTest, AFolderOfSomebodyIsLeftAloneWithoutForce) {
             Out().string() +
                 ": is there and is no report; --force writes the report's files into it all the same\n");
   EXPECT_FALSE(fs::exists(Out() / "report.txt"));
+  std::ofstream(Out() / "variants.csv") << "mine";
   EXPECT_EQ(Report("--no-figures --force").status, 0);
   EXPECT_EQ(ReadAll(Out() / "thesis.txt"), "mine");
+  EXPECT_EQ(ReadAll(Out() / "variants.csv"), "mine") << "this report has none, and there was no other";
   EXPECT_EQ(Report("--no-figures").status, 0) << "now it is a report";
+  EXPECT_FALSE(fs::exists(Out() / "variants.csv"));
 }
 
 TEST_F(ReportTest, LinksAreNotFollowed) {

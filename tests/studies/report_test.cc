@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "engine/core/check.h"
+#include "studies/report/old_report.h"
 #include "tests/claims/synthetic_run.h"
 #include "tests/studies/five_missions.h"
 
@@ -104,9 +105,7 @@ TEST_F(ReportFilesTest, ThoseOfAnEarlierReportGoAndThoseOfOthersStay) {
   const std::vector<std::string> others = {"notes.csv", "tables/mine.md"};
   for (const std::vector<std::string>* names : {&stale, &others})
     for (const std::string& name : *names) std::ofstream(dir_ / name) << "of before";
-  report::Report report = report::MakeReport(OneArm(), {});
-  report.differences.clear();
-  report::WriteReport(report, dir_.string());
+  report::RemoveOldReport(dir_);
   for (const std::string& name : stale) EXPECT_FALSE(fs::exists(dir_ / name)) << name;
   for (const std::string& name : others) EXPECT_EQ(Content(dir_ / name), "of before");
 }
