@@ -13,6 +13,7 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/remove_file.h"
+#include "engine/store/directory_lock.h"
 #include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
 #include "studies/figures/run_source.h"
@@ -138,6 +139,7 @@ void WriteFolder(const std::string& text, const std::vector<report::ComparedRun>
                  const Options& options) {
   const fs::path out(options.out);
   MakeFolder(out);
+  const auto alone = store::LockToWrite(out.string());
   RemoveFile(out / "index.html");  // it comes last: where it is, all is of its runs
   WriteFile(out / "compare.txt", text);
   WriteFile(out / "differences.csv", variants::DifferenceCsv(study));

@@ -17,6 +17,7 @@
 #include "engine/core/parse_number.h"
 #include "engine/rfnn/model_file.h"
 #include "engine/rfnn/onnx_network.h"
+#include "engine/store/directory_lock.h"
 #include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
 #include "engine/sweep/plan_text.h"
@@ -85,7 +86,6 @@ void ExportNetworks(store::ResultReader& reader, const std::string& dir,
                     const std::filesystem::path& folder) {
   const store::FlownNetworks flown = reader.Networks();
   if (flown.files.empty()) throw UserError(fmt::format("{}: --networks: no trained network flew here", dir));
-  const NewFolder made(folder);
   const std::map<std::string, std::string> names = FileNames(flown);
   std::set<std::string> done;
   for (const store::NetworkUse& use : flown.uses) {
@@ -107,6 +107,8 @@ int Export(const Options& options) {
   store::ResultReader reader(run.dir());
   const std::filesystem::path folder = options.out.empty() ? std::filesystem::path(options.dir) / "export"
                                                            : std::filesystem::path(options.out);
+  const NewFolder made(folder);  // a damaged run is refused below
+  const auto alone = store::LockToWrite(folder.string());
   const auto tables = [&](exports::ExportFormat format) {
     for (const exports::ExportedTable& table : exports::ExportTables(reader, format, folder))
       fmt::print("{}: {}\n", table.file.string(), Counted(table.rows, "row"));

@@ -13,6 +13,7 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/message.h"
+#include "engine/store/directory_lock.h"
 #include "studies/figures/draw.h"
 #include "studies/fit/fit.h"
 #include "studies/fit/fit_text.h"
@@ -47,6 +48,7 @@ int FitPerception(const Options& options) {
   if (!options.out.empty()) {
     const std::filesystem::path folder(options.out);
     MakeFolder(folder);
+    const auto alone = store::LockToWrite(folder.string());
     WriteFile(folder / "perception.yaml", perception_fit::ProfileFitYaml(fit, options.perception));
     WriteFile(folder / "perception.json", perception_fit::ProfileFitJson(fit).dump(2) + "\n");
     WriteFile(folder / "looks.csv", perception_fit::LooksCsv(found.looks, fit));
@@ -88,6 +90,8 @@ int Fit(Options options) {
   const fit::FitReport report = fit::RunFit(options.fit);
   figures::DrawResult drawn;
   if (!options.out.empty()) {
+    MakeFolder(options.out);
+    const auto alone = store::LockToWrite(options.out);
     fit::WriteFitOutputs(report, options.out);
     if (!options.no_figures) drawn = figures::DrawFigures(options.out, "plot_fit.py");
   }

@@ -20,6 +20,7 @@
 #include "engine/perception/render/renderer.h"
 #include "engine/perception/render/training_views.h"
 #include "engine/perception/vision/frame_detector.h"
+#include "engine/store/directory_lock.h"
 #include "engine/world/world_file.h"
 
 namespace ed3r::app {
@@ -139,6 +140,7 @@ class DataSet {
   void Write() {
     const fs::path out(options_.out);
     const NewFolder made(out);
+    const auto alone = store::LockToWrite(out.string());
     FrameFile frames(out / "frames.npy", options_.views * options_.frames, size_);
     std::string labels =
         "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label,tilt_deg,"

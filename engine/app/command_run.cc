@@ -93,10 +93,10 @@ int TrainAPart(const sweep::SweepPlan& plan, const Options& options, const sched
   if (options.from.empty())
     throw UserError(
         "--from: is missing; a part of a training stage learns from the run that holds the warm-up");
+  // --out and --accept-mixed may be given to every part of a sweep alike.
   for (const auto& [given, option] :
        {std::pair(options.repair, "--repair"), std::pair(options.only_failed, "--only-failed"),
-        std::pair(options.accept_mixed, "--accept-mixed"), std::pair(options.profile, "--profile"),
-        std::pair(!options.out.empty(), "--out")})
+        std::pair(options.profile, "--profile")})
     if (given)
       throw UserError(
           fmt::format("{}: is not allowed with a part of a training stage, which flies nothing and keeps no "

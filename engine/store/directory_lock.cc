@@ -40,6 +40,15 @@ DirectoryLock::Attempt DirectoryLock::TryLock(const std::string& dir) {
   return {std::nullopt, errno == EWOULDBLOCK};
 }
 
+std::optional<DirectoryLock> LockToWrite(const std::string& dir) {
+  DirectoryLock::Attempt attempt = DirectoryLock::TryLock(dir);
+  if (!attempt.lock && attempt.supported)
+    throw UserError(fmt::format(
+        "{}: another ed3r is writing into this folder; give another one, or the same command when it is done",
+        dir));
+  return std::move(attempt.lock);
+}
+
 DirectoryLock::~DirectoryLock() {
   if (descriptor_ >= 0) close(descriptor_);
 }

@@ -22,6 +22,10 @@ class DirectoryLock {
   int descriptor_;
 };
 
+// Held while a command writes its tables and pictures into a folder, so that no two mix theirs there; none where the file
+// system has no locks. UserError while another process holds it.
+std::optional<DirectoryLock> LockToWrite(const std::string& dir);
+
 struct DirectoryLock::Attempt {
   std::optional<DirectoryLock> lock = {};  // none when another process (or object of this one) holds it
   // False on a file system that has no such locks, or says that it locks and does not.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -115,24 +114,19 @@ Connection::Connection(const std::string& file, Access access) : file_(file) {
   if (!database) throw StoreError(fmt::format("{}: out of memory", file));
   if (status != SQLITE_OK) Fail();
   SetBusyTimeout(kBusyTimeout_ms);
-  NoteIdentity();
 }
 
-void Connection::NoteIdentity() {
-  struct stat found = {};
+bool Connection::HasMoved() const {
   int moved = 0;
-  if (::stat(path_.c_str(), &found) != 0 ||
-      sqlite3_file_control(database_.get(), nullptr, SQLITE_FCNTL_HAS_MOVED, &moved) != SQLITE_OK ||
-      moved != 0)
-    return;
-  device_ = found.st_dev, inode_ = found.st_ino;
+  return sqlite3_file_control(database_.get(), nullptr, SQLITE_FCNTL_HAS_MOVED, &moved) == SQLITE_OK &&
+         moved != 0;
 }
 
 void Connection::CheckNotReplaced() const {
-  struct stat found = {};
-  if (::stat(path_.c_str(), &found) != 0 || (found.st_dev == device_ && found.st_ino == inode_)) return;
-  throw UserError(
-      fmt::format("{}: was replaced since it was opened; open it again (the same command does)", file_));
+  std::error_code error;
+  if (HasMoved() && std::filesystem::exists(path_, error))
+    throw UserError(
+        fmt::format("{}: was replaced since it was opened; open it again (the same command does)", file_));
 }
 
 void Connection::Execute(const std::string& sql) {

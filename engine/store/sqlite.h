@@ -35,6 +35,8 @@ class Connection {
   bool InTransaction() const;
   const std::string& file() const { return file_; }
 
+  // Whether the path that was opened leads to nothing now, or to another file.
+  bool HasMoved() const;
   // UserError where the path that was opened leads to another file now. What this connection reads is still the first; what
   // opens the path again would read the other. A file that is gone is no other.
   void CheckNotReplaced() const;
@@ -47,11 +49,8 @@ class Connection {
   struct Close {
     void operator()(sqlite3* database) const;
   };
-  void NoteIdentity();
-
   std::string file_;
-  std::string path_;                      // absolute
-  std::uint64_t device_ = 0, inode_ = 0;  // of what was opened; 0 where it was replaced at that moment
+  std::string path_;  // absolute
   std::unique_ptr<sqlite3, Close> database_;
 };
 

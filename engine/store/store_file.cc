@@ -1,7 +1,6 @@
 #include "engine/store/store_file.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <filesystem>
 #include <system_error>
@@ -27,13 +26,6 @@ constexpr int kCacheKib = 64 * 1024;
 constexpr int kSharedBusyTimeout_ms = 600 * 1000;
 
 std::string FileIn(const std::string& dir) { return (fs::path(dir) / kResultsFile).string(); }
-
-// Device and inode; zeros where nothing is there.
-std::pair<std::uint64_t, std::uint64_t> IdentityOf(const std::string& file) {
-  struct stat found = {};
-  if (stat(file.c_str(), &found) != 0) return {};
-  return {found.st_dev, found.st_ino};
-}
 
 // The first directory of the path that had to be made; "" where all was there.
 std::string MakeDirectory(const std::string& dir) {
@@ -149,7 +141,7 @@ void StoreFile::CheckOwned() const {
   if (owner_ && owner_->Lost())
     throw StoreError(
         fmt::format("{}: another ed3r has taken this directory over; what is stored is kept", dir_));
-  if (IdentityOf(FileIn(dir_)) != identity_)
+  if (database_->HasMoved())
     throw StoreError(fmt::format(
         "{}: was taken away, or another file put in its place, while it was written to: what this "
         "run has stored is not in it; the same command continues with what is there",
@@ -159,7 +151,6 @@ void StoreFile::CheckOwned() const {
 void StoreFile::Connect() {
   database_.reset();  // the one before, of the other journal
   database_ = std::make_unique<Connection>(FileIn(dir_), Connection::Access::kCreate);
-  identity_ = IdentityOf(FileIn(dir_));
   if (!rollback_journal_) return;
   database_->SetBusyTimeout(kSharedBusyTimeout_ms);
   // A file that was left in WAL mode is opened without shared memory in this mode.

@@ -1,10 +1,8 @@
 // The file of a run directory, open for writing: lock, checks, journal. Shared by the store and the merge.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "engine/store/damage.h"
@@ -70,7 +68,6 @@ class StoreFile {
   std::string grown_;
   std::vector<DamagedMission> repaired_;
   bool rollback_journal_ = false;
-  std::pair<std::uint64_t, std::uint64_t> identity_;  // device and inode
   // One of the two is held; both outlive the connection.
   std::unique_ptr<DirectoryLock> lock_;
   std::unique_ptr<OwnerFile> owner_;

@@ -7,6 +7,7 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/remove_file.h"
+#include "engine/store/directory_lock.h"
 #include "studies/figures/draw.h"
 #include "studies/figures/figure_data.h"
 #include "studies/report/html.h"
@@ -96,6 +97,7 @@ FolderResult WriteReportFolder(const Report& report, const RunResults& results,
   const Provenance& provenance = options.provenance;
   const nlohmann::ordered_json data = FigureData(report, results, options.source);
   MakeFolder(base);
+  const auto alone = store::LockToWrite(base.string());
   for (const fs::path& folder : {base, base / "tables", figures, base / "missions"}) RemoveLeftovers(folder);
   if (IsReport(base)) RemoveOldReport(base);  // in a folder of somebody's such names are his
   RemoveFile(base / "index.html");

@@ -1,6 +1,9 @@
 // `ed3r report` as its users meet it: what it leaves in a folder, with pictures and without.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -182,6 +185,25 @@ TEST_F(ReportTest, IsOfOneStateThoughTheRunIsReplacedMeanwhile) {
   EXPECT_EQ(data.at("points").at(0).at("number").size(), 24u);
   EXPECT_EQ(data.at("run").at("missions"), 24);
   EXPECT_EQ(nlohmann::json::parse(Ed3r("digest --json " + run.string()).out).at("missions"), 3);
+}
+
+TEST_F(ReportTest, TwoCommandsDoNotMixTheirTablesInOneFolder) {
+  const std::string run = (*scratch_ / "run").string(), out = Out().string();
+  ASSERT_EQ(Report("--no-figures --no-missions").status, 0);
+  const std::string page = ReadAll(Out() / "index.html");
+  const int held = open(out.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(flock(held, LOCK_EX), 0);
+  for (const std::string& command :
+       {"report --no-figures --no-missions " + run, "export --csv " + run}) {
+    const CommandResult refused = Ed3r(command + " --out " + out);
+    EXPECT_EQ(refused.status, 2) << command;
+    EXPECT_NE(refused.err.find(out + ": another ed3r is writing into this folder"), std::string::npos)
+        << refused.err;
+  }
+  close(held);
+  EXPECT_EQ(ReadAll(Out() / "index.html"), page);
+  EXPECT_FALSE(fs::exists(Out() / "missions.csv"));
+  EXPECT_EQ(Report("--no-figures --no-missions").status, 0);
 }
 
 TEST_F(ReportTest, AFolderOfSomebodyIsLeftAloneWithoutForce) {
