@@ -16,6 +16,7 @@
 
 #include "engine/core/math_library.h"
 #include "engine/core/shipped.h"
+#include "engine/core/threads.h"
 #include "engine/core/version.h"
 #include "kernels/simd_level.h"
 
@@ -39,10 +40,13 @@ std::string ProcValue(const char* path, const std::string& name) {
 int ObtainedThreads(int wanted) {
   // OpenCV switches OpenMP to dynamic teams, which a loaded machine shrinks to one thread.
   omp_set_dynamic(0);
-  int obtained = 0;
-#pragma omp parallel num_threads(wanted)
+  int obtained = 1;
+  const int possible = PossibleThreads(wanted);
+  WithTeam(possible, [&] {
+#pragma omp parallel num_threads(possible)
 #pragma omp single
-  obtained = omp_get_num_threads();
+    obtained = omp_get_num_threads();
+  });
   return obtained;
 }
 

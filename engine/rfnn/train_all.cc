@@ -10,6 +10,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/phase.h"
+#include "engine/core/threads.h"
 #include "engine/rfnn/model_file.h"
 
 namespace ed3r::rfnn {
@@ -79,9 +80,7 @@ std::vector<std::shared_ptr<const Model>> TrainAll(std::span<const TrainJob> job
   std::vector<std::shared_ptr<const Model>> models(jobs.size());
   std::vector<std::exception_ptr> errors(jobs.size());
   std::mutex reporting;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(std::max(1, options.threads))
-  for (std::size_t at = 0; at < order.size(); ++at) {
-    const std::size_t i = order[at];
+  const auto train = [&](std::size_t i) {
     const WatchedThread watched;
     const InPhase training(Phase::kTraining);
     TrainControl control;
@@ -101,7 +100,12 @@ std::vector<std::shared_ptr<const Model>> TrainAll(std::span<const TrainJob> job
     } catch (...) {
       errors[i] = std::current_exception();
     }
-  }
+  };
+  const int threads = std::max(1, options.threads);
+  WithTeam(threads, [&] {
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+    for (std::size_t at = 0; at < order.size(); ++at) train(order[at]);
+  });
   for (const std::exception_ptr& error : errors)
     if (error) std::rethrow_exception(error);
   for (std::size_t i = 0; i < jobs.size(); ++i) models[i] = models[first_equal[i]];

@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "engine/core/check.h"
+#include "engine/core/threads.h"
 
 namespace ed3r::schedule {
 namespace {
@@ -50,7 +51,8 @@ void ParallelFor(int threads, std::int64_t count, const std::function<void(std::
   // look at what was given.
   omp_set_dynamic(0);
   Body body(call);
-  const int given = Run(threads, count, body);
+  int given = 0;
+  WithTeam(threads, [&] { given = Run(threads, count, body); });
   body.WaitForAll();
   if (given != threads)
     throw UserError(

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <vector>
 
+#include "engine/core/threads.h"
+
 namespace ed3r::schedule {
 namespace {
 
@@ -31,7 +33,8 @@ std::string PhaseTimes::Text() const {
   return text + fmt::format("of {:.1f} thread seconds", total);
 }
 
-PhaseSampler::PhaseSampler() : thread_([this](const std::stop_token& stop) { Loop(stop); }) {}
+PhaseSampler::PhaseSampler()
+    : thread_(NewThread<std::jthread>([this](const std::stop_token& stop) { Loop(stop); })) {}
 
 PhaseSampler::~PhaseSampler() = default;
 

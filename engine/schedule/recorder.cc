@@ -1,5 +1,7 @@
 #include "engine/schedule/recorder.h"
 
+#include "engine/core/threads.h"
+
 namespace ed3r::schedule {
 namespace {
 
@@ -18,7 +20,7 @@ Recorder::Recorder(store::ResultStore& store, const ScheduleOptions& options, st
   progress_.label = options.label;
   progress_.stored_before = options.stored_before;
   progress_.total = options.stored_before + todo;
-  thread_ = std::thread([this] { Loop(); });
+  thread_ = NewThread([this] { Loop(); });
 }
 
 Recorder::~Recorder() {

@@ -5,7 +5,9 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <system_error>
 
+#include "engine/core/threads.h"
 #include "engine/store/records.h"
 #include "engine/store/schema.h"
 
@@ -79,8 +81,14 @@ class JoinedMissions::Source {
 JoinedMissions::JoinedMissions(const std::vector<std::unique_ptr<ResultReader>>& readers, int threads) {
   for (const auto& reader : readers) sources_.push_back(std::make_unique<Source>(*reader));
   const std::size_t count = std::min(static_cast<std::size_t>(std::max(threads, 1)), sources_.size());
-  for (std::size_t thread = 0; thread < count; ++thread)
-    threads_.emplace_back([this, thread, count] { ReadAhead(thread, count); });
+  threads_.reserve(count);
+  const std::lock_guard lock(mutex_);  // none begins before it is known how many share the sources
+  try {
+    for (std::size_t thread = 0; thread < count; ++thread)
+      threads_.push_back(NewThread([this, thread] { ReadAhead(thread); }));
+  } catch (const std::system_error&) {
+    if (threads_.empty()) throw;  // one reads them all too
+  }
 }
 
 JoinedMissions::~JoinedMissions() {
@@ -93,10 +101,10 @@ JoinedMissions::~JoinedMissions() {
 }
 
 // Of the sources of a thread, the one with the least ahead; null where none has room.
-JoinedMissions::Source* JoinedMissions::Hungriest(std::size_t thread, std::size_t threads, bool& any_left) {
+JoinedMissions::Source* JoinedMissions::Hungriest(std::size_t thread, bool& any_left) {
   Source* hungriest = nullptr;
   any_left = false;
-  for (std::size_t i = thread; i < sources_.size(); i += threads) {
+  for (std::size_t i = thread; i < sources_.size(); i += threads_.size()) {
     Source* const source = sources_[i].get();
     if (source->ended) continue;
     any_left = true;
@@ -107,12 +115,12 @@ JoinedMissions::Source* JoinedMissions::Hungriest(std::size_t thread, std::size_
   return hungriest;
 }
 
-void JoinedMissions::ReadAhead(std::size_t thread, std::size_t threads) {
+void JoinedMissions::ReadAhead(std::size_t thread) {
   std::unique_lock lock(mutex_);
   for (bool any_left = true;;) {
     Source* source = nullptr;
     room_.wait(lock, [&] {
-      source = Hungriest(thread, threads, any_left);
+      source = Hungriest(thread, any_left);
       return stop_ || source != nullptr || !any_left;
     });
     if (stop_ || !any_left) return;

@@ -35,6 +35,7 @@ struct ComparedMission {
 class JoinedMissions {
  public:
   // Each store is read as of the moment of this call. `readers` must outlive it; they remain free for other questions.
+  // Where the machine gives fewer threads, those read; std::system_error where it gives none.
   JoinedMissions(const std::vector<std::unique_ptr<ResultReader>>& readers, int threads);
   ~JoinedMissions();
   JoinedMissions(const JoinedMissions&) = delete;
@@ -51,8 +52,8 @@ class JoinedMissions {
   // The key of a source's next mission, and the source.
   using Head = std::pair<std::pair<std::int64_t, std::int64_t>, std::size_t>;
 
-  void ReadAhead(std::size_t thread, std::size_t threads);
-  Source* Hungriest(std::size_t thread, std::size_t threads, bool& any_left);
+  void ReadAhead(std::size_t thread);
+  Source* Hungriest(std::size_t thread, bool& any_left);
   bool Advance(std::size_t source);
   void PushHead(std::size_t source);
 

@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "engine/core/check.h"
+#include "engine/core/threads.h"
 
 namespace ed3r::store {
 namespace {
@@ -122,8 +123,14 @@ std::unique_ptr<OwnerFile> OwnerFile::TryTake(const std::string& dir, std::strin
   return nullptr;
 }
 
-OwnerFile::OwnerFile(std::string path, std::string text)
-    : path_(std::move(path)), text_(std::move(text)), renewer_([this] { Renew(); }) {}
+OwnerFile::OwnerFile(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {
+  try {
+    renewer_ = NewThread([this] { Renew(); });
+  } catch (...) {  // not renewed, it would keep others out until it is stale
+    unlink(path_.c_str());
+    throw;
+  }
+}
 
 OwnerFile::~OwnerFile() {
   {

@@ -39,21 +39,24 @@ void CheckMesh(const TriangleMesh& mesh) {
                            vertices));
 }
 
-struct DeviceDeleter {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
 struct SceneDeleter {
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
 };
-using DevicePtr = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceDeleter>;
 using ScenePtr = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneDeleter>;
 
-DevicePtr MakeDevice() {
+RTCDevice MakeDevice() {
   // One build thread: missions already use every core, and a build in tasks may order its tree differently.
   const std::string config = fmt::format("isa={},threads=1", RayInstructionSet());
-  DevicePtr device(rtcNewDevice(config.c_str()));
-  ED3R_CHECK(device,
+  const RTCDevice device = rtcNewDevice(config.c_str());
+  ED3R_CHECK(device != nullptr,
              fmt::format("Embree error {} for '{}'", static_cast<int>(rtcGetDeviceError(nullptr)), config));
+  return device;
+}
+
+// One for the process, never given back: a device that goes takes its limit of threads with it, and the library beneath then
+// makes threads for nothing, or ends the process where it cannot.
+RTCDevice TheDevice() {
+  static const RTCDevice device = MakeDevice();
   return device;
 }
 
@@ -120,8 +123,7 @@ std::string_view RayInstructionSet() {
 struct StaticGeometry::Impl {
   explicit Impl(TriangleMesh m)
       : mesh(PadForEmbree(std::move(m))),
-        device(MakeDevice()),
-        scene(MakeScene(device.get(), mesh)),
+        scene(MakeScene(TheDevice(), mesh)),
         bullet_mesh(static_cast<int>(mesh.triangles.size()), mesh.triangles.data()->data(),
                     sizeof(Eigen::Vector3i), static_cast<int>(mesh.vertices_m.size()),
                     mesh.vertices_m.data()->data(), sizeof(Eigen::Vector3f)) {}
@@ -157,7 +159,6 @@ struct StaticGeometry::Impl {
   }
 
   TriangleMesh mesh;
-  DevicePtr device;
   ScenePtr scene;
   btTriangleIndexVertexArray bullet_mesh;
   std::once_flag shape_made;
