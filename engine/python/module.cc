@@ -191,17 +191,22 @@ void BindSweeps(py::module_& module) {
     const sweep::SweepPlan plan = LoadRequest(request);
     return std::pair(plan.name, OutsideArms(plan));
   });
-  module.def("fly",
-             [](const SweepRequest& request, const std::string& out, const std::string& cache,
+  module.def(
+      "fly", [](const SweepRequest& request, const std::string& out, const std::string& cache,
                 const std::string& identity, std::size_t rows, int threads, const py::function& drive) {
-               const DriveFn call = [&](const std::shared_ptr<FleetHandle>& fleet) {
-                 const py::gil_scoped_acquire acquire;
-                 drive(fleet);
-               };
-               const py::gil_scoped_release release;
-               const FlightCount count = FlyWithPolicy(request, {out, cache, identity, rows, threads}, call);
-               return std::pair(count.stored, count.failed);
-             });
+        const DriveFn call = [&](const std::shared_ptr<FleetHandle>& fleet) {
+          const py::gil_scoped_acquire acquire;
+          drive(fleet);
+        };
+        // Python's handlers run on its main thread alone; on another this does nothing.
+        const auto heed = [] {
+          const py::gil_scoped_acquire acquire;
+          if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        };
+        const py::gil_scoped_release release;
+        const FlightCount count = FlyWithPolicy(request, {out, cache, identity, rows, threads}, call, heed);
+        return std::pair(count.stored, count.failed);
+      });
 }
 
 }  // namespace

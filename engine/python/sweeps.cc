@@ -9,6 +9,7 @@
 #include "engine/agents/strategy.h"
 #include "engine/core/check.h"
 #include "engine/mission/invariants.h"
+#include "engine/python/aside.h"
 #include "engine/python/fleets.h"
 #include "engine/schedule/sweep_runner.h"
 #include "engine/sweep/sweep_file.h"
@@ -80,8 +81,11 @@ std::vector<std::string> OutsideArms(const sweep::SweepPlan& plan) {
   return names;
 }
 
-FlightCount FlyWithPolicy(const SweepRequest& request, const FlightPlace& place, const DriveFn& drive) {
-  if (place.rows < 1) throw UserError("num_envs: 0 is not allowed; allowed: 1 or more");
+namespace {
+
+// What of FlyWithPolicy is done beside the calling thread, which drives.
+FlightCount FlyAside(const SweepRequest& request, const FlightPlace& place, const DriveFn& drive,
+                     Aside& aside) {
   const sweep::SweepPlan plan = LoadRequest(request);
   const schedule::Inputs inputs(plan);
   schedule::SweepOptions options;
@@ -89,6 +93,7 @@ FlightCount FlyWithPolicy(const SweepRequest& request, const FlightPlace& place,
   options.cache_dir = place.cache;
   options.schedule.threads = place.threads;
   options.schedule.quiet = true;
+  options.schedule.stop = &aside.stop();
   options.half_width = report::HalfWidth;
   options.notes = NotesOf(request, place);
   options.outside_identity = place.policy_identity;
@@ -101,10 +106,21 @@ FlightCount FlyWithPolicy(const SweepRequest& request, const FlightPlace& place,
       ~Retire() { handle.fleet->Retire(), handle.stop = nullptr; }
     } const retire{*fleet};
     fleet->fleet->Reset();
-    drive(fleet);
+    aside.Call([&] { drive(fleet); });
   };
   const schedule::SweepSummary summary = schedule::RunSweep(plan, inputs, options);
   return {summary.flown.stored, summary.flown.failed};
+}
+
+}  // namespace
+
+FlightCount FlyWithPolicy(const SweepRequest& request, const FlightPlace& place, const DriveFn& drive,
+                          const std::function<void()>& heed) {
+  if (place.rows < 1) throw UserError("num_envs: 0 is not allowed; allowed: 1 or more");
+  Aside aside(heed);
+  FlightCount count;
+  aside.Run([&] { count = FlyAside(request, place, drive, aside); });
+  return count;
 }
 
 }  // namespace ed3r::python

@@ -44,7 +44,9 @@ struct FlightCount {
 using DriveFn = std::function<void(const std::shared_ptr<FleetHandle>& fleet)>;
 
 // Flies what is missing of the sweep into place.out, as 'ed3r run' does; `drive` is called once for each arm of strategy
-// external that has missions to fly. Throws UserError, and what `drive` throws; what was flown is kept.
-FlightCount FlyWithPolicy(const SweepRequest& request, const FlightPlace& place, const DriveFn& drive);
+// external that has missions to fly. Missions fly on threads of their own: the calling one calls `drive`, and `heed` several
+// times a second else. Throws UserError, and what `drive` and `heed` throw, which ends the flight; what was flown is kept.
+FlightCount FlyWithPolicy(const SweepRequest& request, const FlightPlace& place, const DriveFn& drive,
+                          const std::function<void()>& heed);
 
 }  // namespace ed3r::python

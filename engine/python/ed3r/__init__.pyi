@@ -69,7 +69,7 @@ class VectorEnv:
 
     Row i flies missions i, i + N, i + 2N, ... of the arm: a mission depends on sweep, seed, number and actions alone, not on
     N, threads, or what the other rows do. The interpreter lock is released while missions fly; one thread uses an
-    environment at a time.
+    environment at a time. Forked processes fly too; with threads, spawned ones step faster.
 
     sweep: path of a sweep file. arm: "ARM" or "STAGE/ARM", not needed where there is one; its world and parameters count, its
     strategy does not. seed: in place of the file's. autoreset_mode: Gymnasium's, or its name ("NextStep", "SameStep",
@@ -131,13 +131,15 @@ def fly(sweep: str | os.PathLike[str], policy: Policy | Mapping[str, Policy] | N
     one policy to each arm of strategy external.
 
     Results go to `out` (results/runs/SWEEP) as ordinary missions: reports, pairing by scenario and comparisons know no
-    difference. A second call continues; by another policy it is refused. `version` tells policies apart; without it a SHA-256
-    does, of the policy's source and of what it decides by when fly is called: arguments bound by functools.partial, defaults,
-    what it closes over, the globals that it names, and an object's attributes. These may be numbers, texts, None, numpy arrays
-    of numbers, your own functions, classes, objects and enums, and tuples, lists, sets and dicts of them. A policy that holds
-    anything else (a tensor, a random generator, an object of a library or with __slots__), whose source cannot be read, or that
-    reaches values which its source does not name (globals, vars, locals, eval, exec, __import__, a descriptor or a metaclass of
-    yours) is refused without a version. One that holds other values afterwards is told in a warning. Not looked at is what it takes out of modules (settings.speed) and files: give one there.
+    difference. Ctrl-C in the main thread ends a call and keeps what has flown. A second call continues; by another policy it
+    is refused. `version` tells policies apart; without it a SHA-256 does, of the policy's source and of what it decides by
+    when fly is called: arguments bound by functools.partial, defaults, what it closes over, the globals that it names, and an
+    object's attributes. These may be numbers, texts, None, numpy arrays of numbers, your own functions, classes, objects and
+    enums, and tuples, lists, sets and dicts of them. A policy that holds anything else (a tensor, a random generator, an
+    object of a library or with __slots__), whose source cannot be read, or that reaches values which its source does not name
+    (globals, vars, locals, eval, exec, __import__, a descriptor or a metaclass of yours) is refused without a version. One
+    that holds other values afterwards is told in a warning. Not looked at is what it takes out of modules (settings.speed)
+    and files: give one there.
     """
 
 def save_network(path: str | os.PathLike[str], agent: str, weights: Sequence[ArrayLike], biases: Sequence[ArrayLike], *,
