@@ -99,5 +99,27 @@ class ProcessesTest(unittest.TestCase):
         ed3r.fly(self.sweep(2), asking, self.root / "run", version="1")
         self.assertEqual(threads, {threading.get_ident()})
 
+    def test_one_thread_at_a_time_uses_an_environment(self):
+        env = ed3r.VectorEnv(self.sweep(4), "mine", num_envs=64, threads=1)
+        env.reset()
+        refused, others = [], []
+
+        def step():
+            for _ in range(200):
+                try:
+                    env.step(stay(np.zeros(64), None))
+                except ed3r.UserError as error:
+                    refused.append(str(error))
+                except Exception as error:
+                    others.append(repr(error))
+
+        threads = [threading.Thread(target=step) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(others, [])
+        self.assertEqual(set(refused), {"step: another thread is using the environment; allowed: one thread at a time"})
+
 
 unittest.main()

@@ -1,5 +1,8 @@
 """Missions stepped side by side, with Gymnasium's vector interface."""
 
+import functools
+import threading
+
 import numpy as np
 
 from . import _arguments, _core
@@ -25,6 +28,21 @@ def _mode_of(given):
     return _arguments.refuse("autoreset_mode", name, f"{allowed}, as texts or of gymnasium.vector.AutoresetMode")
 
 
+def _alone(method):
+    """Refuses the call while another thread is in one."""
+
+    @functools.wraps(method)
+    def call(self, *arguments, **named):
+        if not self._lock.acquire(blocking=False):
+            raise UserError(f"{method.__name__}: another thread is using the environment; allowed: one thread at a time")
+        try:
+            return method(self, *arguments, **named)
+        finally:
+            self._lock.release()
+
+    return call
+
+
 class VectorEnv(VectorEnvBase):
     """`num_envs` missions of one arm of a sweep; see the stub for shapes and units."""
 
@@ -38,6 +56,7 @@ class VectorEnv(VectorEnvBase):
         self._copy = copy
         self._mode = mode
         self._begun = self._moved = False
+        self._lock = threading.Lock()
         self.num_envs = num_envs
         self.arm = self._fleet.arm
         self.metadata = {"autoreset_mode": mode, "render_modes": []}
@@ -53,6 +72,7 @@ class VectorEnv(VectorEnvBase):
         self.single_action_space = Box(low, high, dtype=np.float32)
         self.action_space = Box(np.tile(low, (num_envs, 1)), np.tile(high, (num_envs, 1)), dtype=np.float32)
 
+    @_alone
     def reset(self, *, seed=None, options=None):
         """Begins the next mission of every row, or of those in options["reset_mask"]; with seeds, theirs."""
         self._check_open("reset")
@@ -65,6 +85,7 @@ class VectorEnv(VectorEnvBase):
         self._begun, self._moved = True, False
         return self._observations(), self._infos(np.zeros(self.num_envs, bool))
 
+    @_alone
     def step(self, actions):
         """One timestep of every mission: both stages with one action each."""
         self._check_begun("step")
@@ -73,6 +94,7 @@ class VectorEnv(VectorEnvBase):
         self._move(commands)
         return self._detect(executions)
 
+    @_alone
     def move(self, commands):
         """Stage 1 of a timestep: flies the commands; returns what the robots see, for stage 2."""
         self._check_begun("move")
@@ -80,6 +102,7 @@ class VectorEnv(VectorEnvBase):
         self._move(_arguments.numbers("commands", commands, (self.num_envs, len(_arguments.COMMANDS))))
         return self._given(self._now["robot"])
 
+    @_alone
     def detect(self, executions):
         """Stage 2: looks for the fire; returns what step does."""
         self._check_begun("detect")
