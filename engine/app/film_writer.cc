@@ -1,16 +1,19 @@
 #include "engine/app/film_writer.h"
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
+#include <cstdio>
+#include <stdexcept>
 #include <string>
 
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "engine/core/shipped.h"
+#include "engine/core/temporary.h"
 #include "engine/world/quiet_opencv.h"
 
 namespace ed3r::app {
@@ -18,25 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void CannotWrite(const fs::path& path, const std::string& why) {
-  throw UserError(fmt::format("--video {}: cannot be written: {}", path.string(), why));
-}
+std::string Called(const fs::path& path) { return fmt::format("--video {}", path.string()); }
 
-// A file of its own name beside `path`, so that nothing that stands there is written through.
-fs::path Temporary(const fs::path& path) {
-  std::error_code ignored;
-  const fs::file_status there = fs::symlink_status(path, ignored);
-  if (fs::exists(there) && !fs::is_regular_file(there) && !fs::is_symlink(there))
-    CannotWrite(path, "something other than a file stands there");
-  std::string name = (path.parent_path() / fmt::format(".{}.XXXXXX.mp4", path.stem().string())).string();
-  const int descriptor = mkstemps(name.data(), 4);
-  if (descriptor < 0) CannotWrite(path, std::strerror(errno));
-  close(descriptor);
-  fs::permissions(
-      name, fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_read | fs::perms::others_read,
-      ignored);
-  return name;
-}
+// Room that the next frames and the film's end may take.
+constexpr off_t kRoomBytes = 1 << 20;
 
 // Loaded once and never unloaded: codecs leave threads behind.
 std::unique_ptr<VideoCodec> LoadCodec(const fs::path& film) {
@@ -62,19 +50,37 @@ FilmWriter::FilmWriter(const fs::path& path, cv::Size size_px, double frames_per
     throw UserError(fmt::format("--video {}: is not allowed; its name must end in .mp4", path.string()));
   world::QuietOpenCv();
   codec_ = LoadCodec(path);
-  temporary_ = Temporary(path);
-  if (codec_->Open(temporary_.string(), frames_per_second, size_px)) return;
-  fs::remove(temporary_);
-  throw UserError(fmt::format(
-      "--video {}: OpenCV has no codec for it on this machine (tried H.264 and MPEG-4 of FFmpeg); "
-      "--html and --frames need none",
-      path.string()));
+  file_.emplace(path, Called(path));
+  if (codec_->Open(file_->path.string(), frames_per_second, size_px)) return;
+  file_->CheckRoom(Called(path));
+  throw UserError(
+      fmt::format("{}: OpenCV has no codec for it on this machine (tried H.264 and MPEG-4 of "
+                  "FFmpeg); --html and --frames need none",
+                  Called(path)));
 }
 
-FilmWriter::~FilmWriter() {
-  codec_.reset();
+FilmWriter::~FilmWriter() { codec_.reset(); }
+
+FilmWriter::Temporary::Temporary(const fs::path& film, const std::string& called) {
   std::error_code ignored;
-  if (!temporary_.empty()) fs::remove(temporary_, ignored);
+  const fs::file_status there = fs::symlink_status(film, ignored);
+  if (fs::exists(there) && !fs::is_regular_file(there) && !fs::is_symlink(there))
+    throw UserError(fmt::format("{}: cannot be written: something other than a file stands there", called));
+  const fs::path folder = film.parent_path();
+  RemoveLeftovers(folder.empty() ? "." : folder);
+  descriptor = MakeTemporaryFile(folder, kTemporaryFilm, path);
+  if (descriptor < 0) FailToWrite(called, errno);
+}
+
+FilmWriter::Temporary::~Temporary() {
+  close(descriptor);
+  unlink(path.c_str());  // where it has become the film, the name is nobody's
+  KeepOnSignal(path);
+}
+
+void FilmWriter::Temporary::CheckRoom(const std::string& called) const {
+  const int error = posix_fallocate(descriptor, lseek(descriptor, 0, SEEK_END), kRoomBytes);
+  if (error != 0) FailToWrite(called, error);
 }
 
 void FilmWriter::Add(const cv::Mat& bgr) {
@@ -85,12 +91,14 @@ void FilmWriter::Add(const cv::Mat& bgr) {
 
 void FilmWriter::Commit() {
   const int whole = codec_->Close();
-  if (whole != frames_)
-    CannotWrite(path_, fmt::format("{} of {} frames arrived; is the disk full?", whole, frames_));
-  std::error_code error;
-  fs::rename(temporary_, path_, error);
-  if (error) CannotWrite(path_, error.message());
-  temporary_.clear();
+  if (whole != frames_) {
+    file_->CheckRoom(Called(path_));
+    throw std::runtime_error(fmt::format(
+        "{}: {} of {} frames arrived: FFmpeg could not write them (its threads: see ulimit -u; memory)",
+        Called(path_), whole, frames_));
+  }
+  if (rename(file_->path.c_str(), path_.c_str()) != 0) FailToWrite(Called(path_), errno);
+  file_.reset();
 }
 
 }  // namespace ed3r::app

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
+#include <string>
 
 #include "engine/app/video_codec.h"
 
@@ -19,12 +21,25 @@ class FilmWriter {
   FilmWriter& operator=(const FilmWriter&) = delete;
 
   void Add(const cv::Mat& bgr);  // 8 bits a channel, of the film's size
-  void Commit();                 // the last call. Throws UserError where not all frames can be read back
+  // The last call. Throws UserError where it cannot be written, std::exception where the system has failed.
+  void Commit();
   int Frames() const { return frames_; }
 
  private:
-  std::filesystem::path path_, temporary_;
+  // The film until it is whole, under a name of its own beside its place, so that nothing that stands there is written through.
+  struct Temporary {
+    Temporary(const std::filesystem::path& film, const std::string& called);
+    ~Temporary();
+    Temporary(const Temporary&) = delete;
+    Temporary& operator=(const Temporary&) = delete;
+    void CheckRoom(const std::string& called) const;  // OpenCV does not tell of a full disk
+    std::filesystem::path path;
+    int descriptor;
+  };
+
+  std::filesystem::path path_;
   cv::Size size_px_;
+  std::optional<Temporary> file_;
   std::unique_ptr<VideoCodec> codec_;
   int frames_ = 0;
 };

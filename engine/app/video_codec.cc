@@ -1,5 +1,7 @@
 #include "engine/app/video_codec.h"
 
+#include <stdlib.h>
+
 #include <opencv2/videoio.hpp>
 
 namespace ed3r::app {
@@ -9,6 +11,8 @@ class OpenCvCodec : public VideoCodec {
  public:
   bool Open(const std::string& file, double frames_per_second, cv::Size size_px) override {
     file_ = file;
+    setenv("OPENCV_FFMPEG_LOGLEVEL", "-8",
+           0);  // what fails there is told by who looks whether the film is whole
     for (const int codec :
          {cv::VideoWriter::fourcc('a', 'v', 'c', '1'), cv::VideoWriter::fourcc('m', 'p', '4', 'v')})
       if (writer_.open(file, cv::CAP_FFMPEG, codec, frames_per_second, size_px)) return true;

@@ -10,11 +10,11 @@
 #include <cerrno>
 #include <cstring>
 #include <ctime>
-#include <random>
 #include <system_error>
 #include <vector>
 
 #include "engine/core/check.h"
+#include "engine/core/temporary.h"
 
 namespace ed3r {
 namespace {
@@ -56,31 +56,7 @@ int OpenToRead(const std::string& path) {
   return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
 }
 
-// "ed3r", the machine, a random number: 8 and 16 hexadecimal digits.
-constexpr std::string_view kTemporaryBegin = ".ed3r-", kTemporaryEnd = ".tmp";
-constexpr std::size_t kMachineDigits = 8, kRandomDigits = 16;
 constexpr std::time_t kForgotten_s = 24 * 60 * 60;
-
-std::string TemporaryPrefix() {
-  char name[256] = {};
-  if (::gethostname(name, sizeof name - 1) != 0) name[0] = '\0';
-  std::uint32_t hash = 2166136261u;  // FNV-1a
-  for (const char* c = name; *c != '\0'; ++c) hash = (hash ^ static_cast<unsigned char>(*c)) * 16777619u;
-  return fmt::format("{}{:08x}-", kTemporaryBegin, hash);
-}
-
-bool IsTemporaryName(std::string_view name) {
-  const std::size_t digits = kMachineDigits + 1 + kRandomDigits;
-  if (name.size() != kTemporaryBegin.size() + digits + kTemporaryEnd.size() ||
-      !name.starts_with(kTemporaryBegin) || !name.ends_with(kTemporaryEnd))
-    return false;
-  for (std::size_t i = 0; i < digits; ++i) {
-    const char c = name[kTemporaryBegin.size() + i];
-    const bool is_digit = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
-    if (i == kMachineDigits ? c != '-' : !is_digit) return false;
-  }
-  return true;
-}
 
 // Whether nobody writes it any more. `here`: it is of this machine, whose locks can be asked.
 bool IsLeftover(const fs::path& path, bool here) {
@@ -147,41 +123,25 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
   struct stat found = {};
   if (::lstat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode) && !S_ISLNK(found.st_mode))
     throw UserError(fmt::format("{}: cannot be written: {}", path.string(), KindOf(found.st_mode)));
-  for (int attempt = 0; !OpenTemporary(); ++attempt)
-    if (errno != EEXIST || attempt == 100) Fail(errno);
-}
-
-// False, with errno, where there is none.
-bool AtomicFile::OpenTemporary() {
-  std::random_device random;
-  temporary_ = path_.parent_path() /
-               fmt::format("{}{:08x}{:08x}{}", TemporaryPrefix(), random(), random(), kTemporaryEnd);
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) return false;
-  // Held while it is written, so that RemoveLeftovers can tell it from one whose process is gone. A file system without
-  // such locks refuses them to both.
-  ::flock(descriptor_, LOCK_EX | LOCK_NB);
-  struct stat found = {};
-  if (::fstat(descriptor_, &found) != 0 || found.st_nlink > 0) return true;
-  ::close(descriptor_);  // taken for a leftover in between
-  descriptor_ = -1;
-  errno = EEXIST;
-  return false;
+  descriptor_ = MakeTemporaryFile(path_.parent_path(), kTemporaryEnd, temporary_);
+  if (descriptor_ < 0) Fail(errno);
 }
 
 AtomicFile::~AtomicFile() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
   ::unlink(temporary_.c_str());
+  KeepOnSignal(temporary_);
 }
 
-void AtomicFile::Fail(int error) {
+void FailToWrite(const std::string& where, int error) {
   // The system has failed, not the one who named the place.
   if (error == ENOSPC || error == EDQUOT || error == EIO)
-    throw std::system_error(error, std::generic_category(),
-                            fmt::format("{}: cannot be written", path_.string()));
-  throw UserError(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(error)));
+    throw std::system_error(error, std::generic_category(), fmt::format("{}: cannot be written", where));
+  throw UserError(fmt::format("{}: cannot be written: {}", where, std::strerror(error)));
 }
+
+void AtomicFile::Fail(int error) { FailToWrite(path_.string(), error); }
 
 void AtomicFile::Write(std::string_view bytes) {
   buffer_ += bytes;
@@ -209,10 +169,9 @@ void AtomicFile::Commit() {
   int error = closed != 0 ? errno : 0;
   descriptor_ = -1;
   if (error == 0 && ::rename(temporary_.c_str(), path_.c_str()) != 0) error = errno;
-  if (error != 0) {
-    ::unlink(temporary_.c_str());
-    Fail(error);
-  }
+  if (error != 0) ::unlink(temporary_.c_str());
+  KeepOnSignal(temporary_);
+  if (error != 0) Fail(error);
   SyncFolderOf(path_);
 }
 
@@ -236,11 +195,9 @@ int RemoveLeftovers(const fs::path& folder) {
   std::vector<fs::path> found;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (IsTemporaryName(entry->path().filename().string())) found.push_back(entry->path());
-  const std::string here = TemporaryPrefix();
   int removed = 0;
   for (const fs::path& path : found)
-    if (IsLeftover(path, path.filename().string().starts_with(here)) && ::unlink(path.c_str()) == 0)
-      ++removed;
+    if (IsLeftover(path, IsNamedHere(path.filename().string())) && ::unlink(path.c_str()) == 0) ++removed;
   return removed;
 }
 
@@ -250,6 +207,7 @@ void MakeFolder(const fs::path& folder) {
   // A link to a folder counts as one, which create_directories does not always see.
   if (error && !fs::is_directory(folder))
     throw UserError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  RemoveLeftovers(folder);
 }
 
 }  // namespace ed3r

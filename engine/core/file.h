@@ -39,7 +39,6 @@ class AtomicFile {
   void Commit();  // the last call; syncs the file, renames it, syncs its folder
 
  private:
-  bool OpenTemporary();
   void Flush();
   [[noreturn]] void Fail(int error);
 
@@ -48,6 +47,9 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
+// "where: cannot be written: why", of an errno: std::system_error where the system has failed (a full disk), else UserError.
+[[noreturn]] void FailToWrite(const std::string& where, int error);
+
 void WriteFile(const std::filesystem::path& path, std::string_view content);
 
 // UserError where the file that `option` is to write is one of the inputs, by path, link or hard link: the command would
@@ -55,12 +57,12 @@ void WriteFile(const std::filesystem::path& path, std::string_view content);
 void CheckNoInput(const std::filesystem::path& output, const std::vector<std::string>& inputs,
                   std::string_view option);
 
-// Removes what AtomicFile left in this folder in processes that were killed: files of its names alone, that no process
+// Removes the temporary files (core/temporary.h) that killed processes left in this folder: files of such names, that no process
 // of this machine has open, or that another machine has not touched for a day. Errors are passed over: nothing depends on
 // it. Returns how many there were.
 int RemoveLeftovers(const std::filesystem::path& folder);
 
-// Makes the folder and those above it where they are missing.
+// Makes the folder and those above it where they are missing, for files to be written there; removes leftovers.
 void MakeFolder(const std::filesystem::path& folder);
 
 }  // namespace ed3r

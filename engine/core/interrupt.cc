@@ -7,6 +7,8 @@
 #include <csignal>
 #include <string_view>
 
+#include "engine/core/temporary.h"
+
 namespace ed3r {
 namespace {
 
@@ -30,6 +32,7 @@ void Say(std::string_view line) {
 }
 
 void OnSignalAtOnce(int signal) {
+  RemoveTemporaries();
   if (signal == SIGINT) {
     Say("ed3r: interrupted\n");
     _exit(status_interrupted.load());

@@ -35,7 +35,7 @@ bool AsksRequeue(int signal);
 const char* SignalName(int signal);
 
 // For the time before work that looks at the flag begins: the signals end the process with one line on standard error and
-// their status. SIGHUP stays ignored where it was (nohup).
+// their status, after what is temporary (core/temporary.h) is removed. SIGHUP stays ignored where it was (nohup).
 void EndOnInterrupt(EndStatus status);
 
 // The signals set the flag from now on. A second Ctrl-C ends the process at once. A batch system's signal lets the process

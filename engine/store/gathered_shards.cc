@@ -1,7 +1,6 @@
 #include "engine/store/gathered_shards.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -20,13 +19,6 @@ namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string NewTemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "ed3r-shards-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr)
-    throw UserError(fmt::format("{}: no folder can be made here for the joined shards", name));
-  return name;
-}
 
 std::string Shards(std::int64_t count) { return fmt::format("{} shard{}", count, count == 1 ? "" : "s"); }
 
@@ -167,20 +159,9 @@ GatheredShards::GatheredShards(const std::string& run_dir) : dir_(run_dir) {
   notes_ = std::move(found.notes);
   const std::vector<std::string>& stores = found.dirs;
   if (stores.empty() || (stores.size() == 1 && stores.front() == run_dir)) return;
-  temporary_ = NewTemporaryFolder();
-  dir_ = (fs::path(temporary_) / "run").string();
-  try {
-    MergeStores(dir_, stores);
-  } catch (...) {
-    std::error_code error;
-    fs::remove_all(temporary_, error);
-    throw;
-  }
-}
-
-GatheredShards::~GatheredShards() {
-  std::error_code error;  // what is left in $TMPDIR is the system's to clean
-  if (!temporary_.empty()) fs::remove_all(temporary_, error);
+  temporary_.emplace(fs::temp_directory_path(), "ed3r-shards-");
+  dir_ = (temporary_->path() / "run").string();
+  MergeStores(dir_, stores);
 }
 
 }  // namespace ed3r::store

@@ -1,8 +1,11 @@
 // A run whose missions lie in the stores of a batch system's tasks, to be read as one.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "engine/core/temporary.h"
 
 namespace ed3r::store {
 
@@ -21,15 +24,13 @@ AddingStores StoresThatAdd(const std::string& run_dir);
 class GatheredShards {
  public:
   explicit GatheredShards(const std::string& run_dir);
-  ~GatheredShards();
-  GatheredShards(const GatheredShards&) = delete;
-  GatheredShards& operator=(const GatheredShards&) = delete;
 
   const std::string& dir() const { return dir_; }                   // of one store
   const std::vector<std::string>& notes() const { return notes_; }  // as AddingStores
 
  private:
-  std::string dir_, temporary_;
+  std::string dir_;
+  std::optional<TemporaryFolder> temporary_;
   std::vector<std::string> notes_;
 };
 

@@ -1,10 +1,7 @@
 #include "engine/store/restored_files.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 
 #include "engine/core/check.h"
@@ -14,13 +11,6 @@ namespace ed3r::store {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path MakeTemporaryFolder() {
-  std::string pattern = (fs::temp_directory_path() / "ed3r-files-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr)
-    throw UserError(fmt::format("{}: cannot be made: {}", pattern, std::strerror(errno)));
-  return pattern;
-}
 
 // A name of a file must lead into the folder, whatever somebody wrote into the store.
 bool LeadsOut(const fs::path& name) {
@@ -48,28 +38,17 @@ RestoredFiles::RestoredFiles(ResultReader& reader)
   for (const InputFile& file : files)
     if (!file.content && too_large_.empty()) too_large_ = file.name;
   if (files.empty() || !too_large_.empty()) return;
-  folder_ = MakeTemporaryFolder();
-  try {
-    for (const InputFile& file : files) {
-      if (LeadsOut(file.name))
-        throw UserError(fmt::format("{}: the file is damaged: it keeps a file called '{}'", dir_, file.name));
-      Write(folder_ / file.name, *file.content);
-    }
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-    throw;
+  folder_.emplace(fs::temp_directory_path(), "ed3r-files-");
+  for (const InputFile& file : files) {
+    if (LeadsOut(file.name))
+      throw UserError(fmt::format("{}: the file is damaged: it keeps a file called '{}'", dir_, file.name));
+    Write(folder_->path() / file.name, *file.content);
   }
-}
-
-RestoredFiles::~RestoredFiles() {
-  std::error_code ignored;
-  if (!folder_.empty()) fs::remove_all(folder_, ignored);
 }
 
 std::string RestoredFiles::PathOf(const std::string& called) const {
   const auto place = places_.find(called);
-  if (!folder_.empty() && place != places_.end()) return (folder_ / place->second).string();
+  if (folder_ && place != places_.end()) return (folder_->path() / place->second).string();
   const fs::path beside = (fs::path(sweep_file_).parent_path() / called).lexically_normal();
   std::error_code error;
   if (!sweep_file_.empty() && fs::is_regular_file(beside, error)) return beside.string();

@@ -4,7 +4,10 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
+
+#include "engine/core/temporary.h"
 
 namespace ed3r::store {
 
@@ -16,9 +19,6 @@ class RestoredFiles {
  public:
   // UserError where the folder cannot be written.
   explicit RestoredFiles(ResultReader& reader);
-  ~RestoredFiles();
-  RestoredFiles(const RestoredFiles&) = delete;
-  RestoredFiles& operator=(const RestoredFiles&) = delete;
 
   // The file that the plan calls so. Where the store does not keep it (a run of format 1, or one with a file that was too
   // large), the one beside the sweep file of the last session, if that is still there; else UserError that names the file
@@ -27,7 +27,7 @@ class RestoredFiles {
 
  private:
   std::string dir_;
-  std::filesystem::path folder_;  // "" when nothing is restored
+  std::optional<TemporaryFolder> folder_;  // none when nothing is restored
   std::map<std::string, std::string> places_;
   std::string too_large_;   // the first file that is not kept, "" when all are
   std::string sweep_file_;  // "" where no session tells

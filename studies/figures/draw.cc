@@ -16,6 +16,7 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/shipped.h"
+#include "engine/core/temporary.h"
 
 extern char** environ;
 
@@ -30,28 +31,6 @@ std::string Environment(const char* name, const char* otherwise) {
   const char* value = std::getenv(name);
   return value != nullptr && *value != '\0' ? value : otherwise;
 }
-
-// A folder of our own inside `parent`, removed with all that is in it. Scripts write by name and through links; here
-// nobody else has put any.
-class PrivateFolder {
- public:
-  explicit PrivateFolder(const fs::path& parent) {
-    std::string pattern = (parent / ".drawing-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw UserError(fmt::format("{}: cannot be written: {}", parent.string(), std::strerror(errno)));
-    path_ = pattern;
-  }
-  ~PrivateFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  PrivateFolder(const PrivateFolder&) = delete;
-  PrivateFolder& operator=(const PrivateFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 // Pictures that the script made take their place whole.
 void TakePictures(const fs::path& from, const fs::path& into) {
@@ -95,7 +74,8 @@ DrawResult DrawFigures(const std::string& folder, const std::string& script_name
   if (!fs::exists(script))
     return {Drawing::kUnavailable,
             fmt::format("{} is not there; set ED3R_SCRIPTS to its folder", script.string())};
-  const PrivateFolder work(folder);
+  // Scripts write by name and through links; here nobody else has put any.
+  const TemporaryFolder work(folder, ".drawing-");
   for (const char* data : {"data.json", "fit.json", "rows.csv", "flights.csv"})
     if (const fs::path file = fs::path(folder) / data; fs::is_regular_file(file))
       fs::copy_file(file, work.path() / data);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 #include <vector>
@@ -75,6 +76,36 @@ TEST_F(FilmTest, WhatCannotBeWrittenIsRefusedInOneLineBeforeAnythingFlies) {
   }
   for (const auto& entry : fs::directory_iterator(out_.Path()))
     EXPECT_EQ(entry.path().filename(), "folder.mp4") << "nothing is left";
+}
+
+TEST_F(FilmTest, NothingIsLeftOfAFilmThatWasEnded) {
+  const std::string replay = fmt::format("replay {} rbs/0 --out {} --video {}", Run(),
+                                         (out_ / "replay").string(), (out_ / "f.mp4").string());
+  const fs::path files = out_ / "tmp";
+  fs::create_directory(files);
+  // Ended as soon as it writes the film; "signal" is its own.
+  const auto end = [&](const std::string& signal) {
+    const std::string line = fmt::format("TMPDIR={1} " ED3R_BINARY
+                                         " {0} 2>/dev/null & child=$!; "
+                                         "for i in $(seq 600); do ls {2}/.*.mp4 >/dev/null 2>&1 && break; "
+                                         "sleep 0.05; done; kill -{3} $child; wait $child",
+                                         replay, files.string(), out_.Path().string(), signal);
+    ASSERT_NE(std::system(fmt::format("bash -c '{}'", line).c_str()), 0);
+  };
+  const auto films = [&] {
+    return std::count_if(fs::directory_iterator(out_.Path()), fs::directory_iterator(),
+                         [](const fs::directory_entry& entry) { return entry.path().extension() == ".mp4"; });
+  };
+  for (const char* signal : {"INT", "TERM"}) {
+    end(signal);
+    EXPECT_EQ(films(), 0) << signal;
+    EXPECT_TRUE(fs::is_empty(files)) << signal;
+  }
+  end("KILL");
+  EXPECT_EQ(films(), 1) << "it cannot know";
+  EXPECT_EQ(Ed3r(replay).status, 0);
+  EXPECT_EQ(films(), 1) << "the film alone";
+  EXPECT_TRUE(fs::exists(out_ / "f.mp4"));
 }
 
 }  // namespace

@@ -64,5 +64,14 @@ TEST_F(ThreadsTest, WorldsAndReportsNeedOneThread) {
   EXPECT_EQ(report.err, Ed3r("report " + In("run")).err);
 }
 
+TEST_F(ThreadsTest, AFilmThatFFmpegCannotWriteIsToldInOneLine) {
+  ASSERT_EQ(Ed3r(fmt::format("run {} --out {}", kRbs, In("run"))).status, 0);
+  const CommandResult film =
+      With(0, fmt::format("replay {} rbs/0 --out {} --video {}", In("run"), In("replay"), In("f.mp4")));
+  EXPECT_EQ(film.status, 1);
+  EXPECT_EQ(film.err.rfind("ed3r: failed inside: --video " + In("f.mp4") + ": 0 of ", 0), 0u) << film.err;
+  EXPECT_EQ(film.err.find('\n'), film.err.size() - 1) << film.err;
+}
+
 }  // namespace
 }  // namespace ed3r::app

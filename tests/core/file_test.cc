@@ -14,6 +14,7 @@
 #include <iterator>
 
 #include "engine/core/check.h"
+#include "engine/core/temporary.h"
 
 namespace ed3r {
 namespace {
@@ -136,6 +137,19 @@ TEST_F(FileTest, WhatAKilledProcessLeftIsRemovedAndNothingElse) {
   writing.Commit();
   EXPECT_EQ(RemoveLeftovers(folder_), 0);
   EXPECT_EQ(RemoveLeftovers(folder_ / "none"), 0);
+}
+
+TEST_F(FileTest, AFolderThatIsToBeWrittenIsRidOfWhatKilledProcessesLeft) {
+  KilledWhileWriting(folder_ / "x");
+  fs::path film;
+  close(MakeTemporaryFile(folder_, kTemporaryFilm, film));
+  EXPECT_EQ(film.extension(), ".mp4");
+  fs::path held;
+  const int descriptor = MakeTemporaryFile(folder_, kTemporaryFilm, held);
+  MakeFolder(folder_);
+  EXPECT_EQ(Entries(), 1);
+  EXPECT_TRUE(fs::exists(held)) << "somebody writes it";
+  close(descriptor);
 }
 
 TEST_F(FileTest, WhatAnotherMachineLeftIsRemovedAfterADay) {

@@ -1,13 +1,21 @@
 #include "engine/core/interrupt.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
 #include <string>
+#include <vector>
+
+#include "engine/core/file.h"
+#include "engine/core/temporary.h"
 
 namespace ed3r {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int kAll[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
 
@@ -41,6 +49,32 @@ TEST(InterruptTest, BeforeThereIsWorkASignalEndsTheProcessWithALineAndAStatus) {
         signal == SIGINT
             ? "^ed3r: interrupted\n$"
             : std::string("^ed3r: ended by ") + SignalName(signal) + "; the same command continues\n$");
+}
+
+TEST(InterruptTest, ASignalThatEndsTheProcessTakesWhatIsTemporary) {
+  // Not a TemporaryFolder: the process that ends would take it too.
+  const fs::path scratch = fs::temp_directory_path() / fmt::format("ed3r-test-{}", getpid());
+  fs::create_directory(scratch);
+  EXPECT_EXIT(
+      {
+        const AtomicFile written(scratch / "half");
+        AtomicFile whole(scratch / "whole");
+        whole.Write("all of it");
+        whole.Commit();
+        const TemporaryFolder files(scratch, "files-");
+        fs::create_directories(files.path() / "a" / "b");
+        WriteFile(files.path() / "x", "1");
+        WriteFile(files.path() / "a" / "b" / "y", "2");
+        fs::create_directory_symlink(scratch, files.path() / "link");
+        EndOnInterrupt({.interrupted = 130, .requeue = 75});
+        std::raise(SIGINT);
+      },
+      ::testing::ExitedWithCode(130), "^ed3r: interrupted\n$");
+  std::vector<std::string> left;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(scratch))
+    left.push_back(entry.path().filename().string());
+  EXPECT_EQ(left, std::vector<std::string>{"whole"});
+  fs::remove_all(scratch);
 }
 
 TEST(InterruptTest, WorkThatDoesNotLookAtTheFlagIsEndedAfterABatchSystemsSignal) {
