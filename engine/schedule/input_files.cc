@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <limits>
 #include <set>
 #include <vector>
 
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 #include "engine/core/sha256.h"
 #include "engine/sweep/setting.h"
 #include "engine/world/terrain.h"
@@ -53,9 +53,7 @@ fs::path CommonFolder(const std::set<fs::path>& paths) {
 }
 
 store::InputFile Kept(const fs::path& path, const std::string& name) {
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes(std::istreambuf_iterator<char>(in), {});
-  if (!in) throw UserError(fmt::format("{}: cannot be read", path.string()));
+  std::string bytes = ReadFile(path.string(), std::numeric_limits<std::uintmax_t>::max());
   Sha256 sha;
   sha.Update(bytes);
   store::InputFile file{name, sha.Hex(), std::nullopt};
