@@ -128,8 +128,8 @@ class SweepRun {
   SweepSummary Run() {
     const WatchedThread watched;
     std::optional<PhaseSampler> sampler;
-    if (options_.profile) sampler.emplace();
     try {
+      if (options_.profile) sampler.emplace();
       RunStages();
       // What was interrupted before it put anything has the plan of before.
       if (!summary_.flown.interrupted) store_->Grow();

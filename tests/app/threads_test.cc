@@ -42,6 +42,9 @@ TEST_F(ThreadsTest, ARunTellsHowManyThereAre) {
   const CommandResult none = With(0, run + "1");
   EXPECT_EQ(none.status, 1);
   EXPECT_EQ(none.err, kNone);
+  const CommandResult profile = With(0, run + "1 --profile");
+  EXPECT_EQ(profile.err, kNone);
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "run" / "results.sqlite")) << "it has not begun";
   // One of them stores.
   const CommandResult two = With(2, run + "3");
   EXPECT_EQ(two.status, 1);
