@@ -193,8 +193,7 @@ TEST_F(ReportTest, TwoCommandsDoNotMixTheirTablesInOneFolder) {
   const std::string page = ReadAll(Out() / "index.html");
   const int held = open(out.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   ASSERT_EQ(flock(held, LOCK_EX), 0);
-  for (const std::string& command :
-       {"report --no-figures --no-missions " + run, "export --csv " + run}) {
+  for (const std::string& command : {"report --no-figures --no-missions " + run, "export --csv " + run}) {
     const CommandResult refused = Ed3r(command + " --out " + out);
     EXPECT_EQ(refused.status, 2) << command;
     EXPECT_NE(refused.err.find(out + ": another ed3r is writing into this folder"), std::string::npos)
