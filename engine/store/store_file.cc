@@ -159,15 +159,16 @@ void StoreFile::Connect() {
 
 void StoreFile::SetJournal(bool empty) {
   if (empty) database_->Execute(fmt::format("PRAGMA page_size = {}", kPageBytes));
-  // A log that a killed writer has left goes on with the mark of that session.
-  if (database_->Text("PRAGMA journal_mode") != "wal")
-    database_->Execute(fmt::format("PRAGMA schema_version = {}", DrawMark()));
+  const std::string mark = fmt::format("PRAGMA schema_version = {}", DrawMark());
   if (rollback_journal_) {
     // The lock is given back with the next commit, so that readers get their turn between commits.
     database_->Execute(
         "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL; PRAGMA locking_mode = NORMAL");
+    database_->Execute(mark);  // not before: it would wait for another writer while that one waits for its lock
     return;
   }
+  // A log that a killed writer has left goes on with the mark of that session.
+  if (database_->Text("PRAGMA journal_mode") != "wal") database_->Execute(mark);
   database_->Execute("PRAGMA journal_mode = WAL");
   // A commit outlives the process at once, and a power cut costs the last commits but never the file.
   database_->Execute("PRAGMA synchronous = NORMAL");
