@@ -154,7 +154,7 @@ int Run(const Options& options) {
   sweep.notes.emplace("sweep question", plan.question);
   const schedule::SweepSummary summary = schedule::RunSweep(plan, inputs, sweep);
 
-  const store::StateOfFile told = store::LookAtFile(dir);
+  const store::FileMoment told = store::LookAtFile(dir);
   std::string table;
   if (!options.quiet) {
     const bool part = shard.count > 1, ended = !summary.flown.interrupted;

@@ -135,8 +135,20 @@ std::string OtherSweep(const fs::path& folder, const SweepArguments& sweep) {
   if (begin == std::string::npos) return "";
   std::string there = text.substr(begin + opening.size(), end - begin - opening.size());
   if (there.ends_with(')')) there.pop_back();
-  if (there == words) return "";
-  return fmt::format("{}: its tasks fly '{}', not '{}' as asked for here", common, there, words);
+  if (there != words)
+    return fmt::format("{}: its tasks fly '{}', not '{}' as asked for here", common, there, words);
+  return "";
+}
+
+// A folder that was moved still names the one that it was made for.
+std::string OtherRun(const fs::path& folder, const std::string& run_dir) {
+  const std::string common = (folder / "common.sh").string(), text = ReadFile(common), opening = "\nrun=";
+  const std::size_t begin = text.find(opening), end = text.find_first_of(" \n", begin + opening.size());
+  if (begin == std::string::npos) return "";
+  const std::string there = text.substr(begin + opening.size(), end - begin - opening.size());
+  const std::string here = schedule::ShellWord(run_dir);
+  if (here.starts_with(there)) return "";  // a word may have blanks
+  return fmt::format("{}: its tasks write into {}, not into {}", common, there, here);
 }
 
 // How many shards the scripts in the folder divide a stage into.
@@ -186,9 +198,11 @@ int TellMissing(const sweep::SweepPlan& plan, const Options& options, const fs::
     fmt::print("{}: nothing is owed\n", run_dir);
     return kDone;
   }
-  if (const std::string other = OtherSweep(folder, options.sweep); !other.empty()) {
+  for (const std::string& other :
+       {OtherSweep(folder, options.sweep), OtherRun(folder, ScriptOptions(options, run_dir).run_dir)}) {
+    if (other.empty()) continue;
     if (options.submit)
-      throw UserError(other + "; give the same sweep, or write the scripts anew with --force");
+      throw UserError(other + "; give what they were written for, or write the scripts anew with --force");
     Tell("note: {}", other);
   }
   const schedule::BatchStep& step = steps[static_cast<std::size_t>(owed.step) - 1];

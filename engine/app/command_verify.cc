@@ -28,6 +28,7 @@ struct Verification {
   std::int64_t stores = 0, missions = 0;
   std::vector<Damage> damage;
   std::vector<std::string> other;  // lines on what is not a mission
+  std::vector<std::string> notes;
 };
 
 void VerifyStore(const std::string& dir, Verification& found) {
@@ -58,6 +59,8 @@ Verification Verify(const std::string& dir) {
   Verification found;
   if (shards.empty() || store::HoldsResults(dir)) VerifyStore(dir, found);
   for (const std::string& shard : shards) VerifyStore(shard, found);
+  for (const std::string& empty : store::EmptyShardDirs(dir))
+    found.notes.push_back(fmt::format("{}: no results in it: {} is empty", empty, store::kResultsFile));
   return found;
 }
 
@@ -138,7 +141,13 @@ Command AddVerify(Program& program) {
   parser.Option("DIR", options->dir, "Run directory; shards in it, merged or not, are compared, too")
       .Required();
   parser.Flag("--json", options->json, "Print JSON");
-  return {parser, [options] { return PrintVerification(options->dir, Verify(options->dir), options->json); }};
+  return {parser, [options] {
+            const Verification found = Verify(options->dir);
+            const int status = PrintVerification(options->dir, found, options->json);
+            FlushOutput();
+            TellNotes(found.notes);
+            return status;
+          }};
 }
 
 Command AddDiff(Program& program) {

@@ -58,7 +58,7 @@ bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, bool 
   }
 }
 
-void RememberFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const store::StateOfFile& told,
+void RememberFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const store::FileMoment& told,
                          std::int64_t missions, const std::string& table, const std::string& networks) {
   const std::string program = ThisProgram();
   if (program.empty()) return;

@@ -17,7 +17,7 @@ bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, bool 
 
 // After a run that was complete: `table` and `networks` as they were printed, "" where the command was quiet; `told`: the
 // state of the file from before the table was made.
-void RememberFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const store::StateOfFile& told,
+void RememberFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const store::FileMoment& told,
                          std::int64_t missions, const std::string& table, const std::string& networks);
 
 }  // namespace ed3r::app

@@ -33,6 +33,8 @@ namespace py = pybind11;
 namespace ed3r::python {
 namespace {
 
+std::atomic<bool> interpreter_ends{false};
+
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using Codes = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 using Marks = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>;
@@ -191,6 +193,7 @@ void BindSweeps(py::module_& module) {
     const sweep::SweepPlan plan = LoadRequest(request);
     return std::pair(plan.name, OutsideArms(plan));
   });
+  module.def("end_flights", [] { interpreter_ends = true; });
   module.def(
       "fly", [](const SweepRequest& request, const std::string& out, const std::string& cache,
                 const std::string& identity, std::size_t rows, int threads, const py::function& drive) {
@@ -200,6 +203,7 @@ void BindSweeps(py::module_& module) {
         };
         // Python's handlers run on its main thread alone; on another this does nothing.
         const auto heed = [] {
+          if (interpreter_ends) throw std::runtime_error("the interpreter ends; what is stored is kept");
           const py::gil_scoped_acquire acquire;
           if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         };

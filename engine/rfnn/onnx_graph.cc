@@ -1,6 +1,7 @@
 #include "engine/rfnn/onnx_graph.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
@@ -8,6 +9,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/protobuf.h"
+#include "engine/core/sha256.h"
 
 namespace ed3r::rfnn {
 namespace {
@@ -208,6 +210,47 @@ std::string OnnxGraphBytes(const OnnxGraph& graph, int features, const std::stri
     model.Bytes(kMetadata, pair.bytes());
   }
   return model.bytes();
+}
+
+namespace {
+
+constexpr char kSealKey[] = "ed3r.sha256";
+
+std::string SealOf(const OnnxGraph& graph) {
+  Sha256 sha;
+  const auto text = [&](const std::string& part) { sha.Update(fmt::format("{}:{}", part.size(), part)); };
+  const auto texts = [&](const std::vector<std::string>& parts) {
+    sha.Update(fmt::format("{} ", parts.size()));
+    for (const std::string& part : parts) text(part);
+  };
+  texts(graph.inputs);
+  texts(graph.outputs);
+  for (const OnnxNode& node : graph.nodes) {
+    text(node.op);
+    texts(node.inputs);
+    texts(node.outputs);
+    for (const auto& [attribute, number] : node.numbers) text(fmt::format("{} {}", attribute, number));
+  }
+  for (const auto& [tensor, held] : graph.tensors) {
+    text(fmt::format("{} {}", tensor, fmt::join(held.dims, " ")));
+    sha.Update(held.values.data(), held.values.size() * sizeof(float));
+  }
+  for (const auto& [key, value] : graph.metadata)
+    if (key != kSealKey) text(fmt::format("{} {}", key, value));
+  return sha.Hex();
+}
+
+}  // namespace
+
+void SealOnnx(OnnxGraph& graph) { graph.metadata[kSealKey] = SealOf(graph); }
+
+void CheckOnnxSeal(const OnnxGraph& graph, const std::string& name) {
+  const auto found = graph.metadata.find(kSealKey);
+  if (found != graph.metadata.end() && found->second != SealOf(graph))
+    throw UserError(
+        fmt::format("{}: what it computes by does not match its metadata '{}': it is damaged, or was changed "
+                    "since ed3r wrote it; write it again, or take that entry out where the change was meant",
+                    name, kSealKey));
 }
 
 }  // namespace ed3r::rfnn

@@ -36,6 +36,11 @@ struct OnnxGraph {
 // Throws UserError that begins with `name`: no ONNX file, tensors that are no floats or not as long as they say.
 OnnxGraph ParseOnnxGraph(std::string_view bytes, const std::string& name);
 
+// Files that this program writes have a hash of all that a network computes by in their metadata, "ed3r.sha256".
+void SealOnnx(OnnxGraph& graph);
+// UserError where a graph has such a hash and it is another one: a bit has turned, or it was changed since.
+void CheckOnnxSeal(const OnnxGraph& graph, const std::string& name);
+
 // `features` and `outputs`: widths of the input and of the output.
 std::string OnnxGraphBytes(const OnnxGraph& graph, int features, const std::string& graph_name,
                            int outputs = 1);

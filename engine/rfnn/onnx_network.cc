@@ -315,6 +315,7 @@ void CheckFeatures(const OnnxGraph& graph, const std::string& expected, const st
 std::shared_ptr<const OnnxNetwork> OnnxNetwork::Parse(std::string_view bytes, const std::string& name,
                                                       const NetworkDesign& design) {
   const OnnxGraph graph = ParseOnnxGraph(bytes, name);
+  CheckOnnxSeal(graph, name);
   Chain chain(graph, name, design);
   chain.Walk();
   CheckFeatures(graph, FeatureNames(design.features.first(static_cast<std::size_t>(chain.width()))), name);
@@ -384,6 +385,7 @@ class ChainWriter {
 
   std::string Bytes(int inputs, const std::string& name, int outputs) {
     graph_.nodes.back().outputs = graph_.outputs;
+    SealOnnx(graph_);
     return OnnxGraphBytes(graph_, inputs, name, outputs);
   }
 

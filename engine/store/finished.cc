@@ -2,9 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include <array>
 #include <ctime>
 #include <filesystem>
 
@@ -23,17 +21,9 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kNsPerS = 1'000'000'000;
 
 // Of the file's header: raised by every transaction that writes outside of WAL mode. -1 where it cannot be read.
-std::int64_t ChangeCounter(const std::string& file) {
-  std::array<unsigned char, 4> bytes = {};
-  constexpr off_t kOffset = 24;
-  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return -1;
-  const ssize_t got = pread(descriptor, bytes.data(), bytes.size(), kOffset);
-  close(descriptor);
-  if (got != static_cast<ssize_t>(bytes.size())) return -1;
-  std::int64_t counter = 0;
-  for (const unsigned char byte : bytes) counter = counter << 8 | byte;
-  return counter;
+std::int64_t ChangeCounter(const Connection& database) {
+  const auto state = database.StateOfFile();
+  return state ? std::int64_t{state->changes} : -1;
 }
 
 struct FileTimes {
@@ -70,11 +60,11 @@ bool Holds(const std::string& file, const std::string& plan_text, const Finished
 }
 
 void Write(const std::string& file, const FinishedRun& run) {
-  const std::int64_t counter = ChangeCounter(file) + 1;
   timespec now = {};
   clock_gettime(CLOCK_REALTIME, &now);
   {
     Connection database(file, Connection::Access::kReadWrite);
+    const std::int64_t counter = ChangeCounter(database) + 1;
     if (database.Text("PRAGMA journal_mode") == "wal") return;  // a reader is still looking
     Transaction transaction(database, Transaction::Kind::kWrite);
     database.Execute(
@@ -93,15 +83,15 @@ void Write(const std::string& file, const FinishedRun& run) {
 
 }  // namespace
 
-StateOfFile LookAtFile(const std::string& dir) {
+FileMoment LookAtFile(const std::string& dir) {
   const std::string file = ResultsFileOf(dir);
   struct stat found = {};
   if (stat(file.c_str(), &found) != 0) return {};
   return {static_cast<std::int64_t>(found.st_dev), static_cast<std::int64_t>(found.st_ino), found.st_size,
-          ChangeCounter(file)};
+          ChangeCounter(Connection(file, Connection::Access::kReadOnly))};
 }
 
-void RememberFinished(const std::string& dir, const StateOfFile& told, const std::string& plan_text,
+void RememberFinished(const std::string& dir, const FileMoment& told, const std::string& plan_text,
                       const FinishedRun& run) {
   const std::string file = ResultsFileOf(dir);
   if (IsSharedFileSystem(PlaceOf(dir))) return;
@@ -121,7 +111,7 @@ std::optional<FinishedRun> RecallFinished(const std::string& dir, const std::str
                    "WHERE made_by = ?");
   select.Bind(0, made_by);
   const FileTimes times = TimesOf(file);
-  if (!select.Step() || select.Int(0) != ChangeCounter(file) || select.Int(1) != times.written_ns ||
+  if (!select.Step() || select.Int(0) != ChangeCounter(database) || select.Int(1) != times.written_ns ||
       times.changed_ns - times.written_ns > kLongestDatingNs)
     return std::nullopt;
   FinishedRun run{made_by, select.Int(2), select.Text(3), select.Text(4)};

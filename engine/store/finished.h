@@ -19,15 +19,15 @@ struct FinishedRun {
 };
 
 // Which state of which file something was told from. -1 throughout where it cannot be seen.
-struct StateOfFile {
+struct FileMoment {
   std::int64_t device = -1, inode = -1, bytes = -1, changes = -1;
-  bool operator==(const StateOfFile&) const = default;
+  bool operator==(const FileMoment&) const = default;
 };
-StateOfFile LookAtFile(const std::string& dir);
+FileMoment LookAtFile(const std::string& dir);
 
 // Does nothing where the file has left the state that was told from, is of another plan or holds other missions than the plan
 // and the run say, where another process is at it, or several machines may be.
-void RememberFinished(const std::string& dir, const StateOfFile& told, const std::string& plan_text,
+void RememberFinished(const std::string& dir, const FileMoment& told, const std::string& plan_text,
                       const FinishedRun& run);
 
 // Nothing where the file was touched, made by another program, or never remembered.

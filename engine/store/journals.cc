@@ -21,7 +21,7 @@ constexpr std::uint32_t kMostSchemaChanges = 4096;  // of one session; they are 
 constexpr int kLooks = 10;
 constexpr std::chrono::milliseconds kBetweenLooks{20};
 
-// Numbers are big-endian; places are those of SQLite's file format.
+// A journal, on which SQLite has no locks. Numbers are big-endian; places are those of SQLite's file format.
 class BinaryFile {
  public:
   explicit BinaryFile(const std::string& name) : descriptor_(open(name.c_str(), O_RDONLY | O_CLOEXEC)) {}
@@ -48,26 +48,20 @@ class BinaryFile {
   int descriptor_;
 };
 
-// What the first page of a file, or a copy of it in a journal, tells of its state.
-struct State {
-  std::uint32_t changes = 0, mark = 0;
-  bool operator==(const State&) const = default;
-};
-
-std::optional<State> StateAt(const BinaryFile& file, std::int64_t page) {
-  const auto changes = file.Number(page + 24), mark = file.Number(page + 40);
-  if (!changes || !mark) return std::nullopt;
-  return State{*changes, *mark};
+std::optional<FileState> StateAt(const BinaryFile& file, std::int64_t page) {
+  const auto changes = file.Number(page + 24), pages = file.Number(page + 28), mark = file.Number(page + 40);
+  if (!changes || !pages || !mark) return std::nullopt;
+  return FileState{*changes, *mark, *pages};
 }
 
-// The states of the first page in the commits of a write-ahead log; none where it holds none.
-std::optional<std::pair<State, State>> StatesOfLog(const std::string& name) {
+// The states of the file by its first page in the commits of a write-ahead log; none where it holds none.
+std::optional<std::pair<FileState, FileState>> StatesOfLog(const std::string& name) {
   constexpr std::int64_t kHeaderBytes = 32, kFrameHeaderBytes = 24;
   const BinaryFile log(name);
   std::array<char, 8> salt = {}, salt_of_frame = {};
   const auto page_bytes = log.there() ? log.Number(8) : std::nullopt;
   if (!page_bytes || *page_bytes < 512 || !log.Read(16, salt.data(), salt.size())) return std::nullopt;
-  std::optional<State> first, last, committed;
+  std::optional<FileState> first, last, committed;
   for (std::int64_t at = kHeaderBytes;; at += kFrameHeaderBytes + *page_bytes) {
     const auto page = log.Number(at), pages_after_commit = log.Number(at + 4);
     if (!page || !pages_after_commit || !log.Read(at + 8, salt_of_frame.data(), salt_of_frame.size()) ||
@@ -82,7 +76,7 @@ std::optional<std::pair<State, State>> StatesOfLog(const std::string& name) {
 }
 
 struct JournalledPage {
-  State state;
+  FileState state;
   bool alone = false;  // nothing else was about to change
 };
 
@@ -119,23 +113,23 @@ std::optional<JournalledPage> FirstPageOfJournal(const std::string& name) {
 bool SameMark(std::uint32_t before, std::uint32_t after) { return after - before < kMostSchemaChanges; }
 
 // A log is written back from time to time: the file is at a state from that before its first commit to that after its last.
-bool IsOf(const State& file, const std::pair<State, State>& log) {
+// One that is of an earlier round ends before the file does. A session that takes up a killed one's log marks the file in it.
+bool IsOf(const FileState& file, const std::pair<FileState, FileState>& log) {
   const auto& [first, last] = log;
-  return SameMark(file.mark, last.mark) &&
+  const bool same_mark =
+      SameMark(file.mark, first.mark) || SameMark(file.mark, last.mark) || SameMark(first.mark, file.mark);
+  return same_mark && file.pages <= last.pages &&
          file.changes - (first.changes - 1) <= last.changes - (first.changes - 1);
 }
 
 // The file is as it was before the commit that would be undone, or as it would have been after it. Giving the file a new mark
 // is a commit of its own.
-bool IsOf(const State& file, const JournalledPage& before) {
+bool IsOf(const FileState& file, const JournalledPage& before) {
   return file.changes - before.state.changes <= 1 && (before.alone || SameMark(before.state.mark, file.mark));
 }
 
 // "-wal" or "-journal" where that is another file's.
-std::string StrangeJournal(const std::string& name) {
-  const BinaryFile file(name);
-  if (!file.there()) return "";  // SQLite takes the journals of nothing away
-  const auto state = StateAt(file, 0);
+std::string StrangeJournal(const std::string& name, const std::optional<FileState>& state) {
   const auto log = StatesOfLog(name + "-wal");
   if (log && (!state || !IsOf(*state, *log))) return "-wal";
   const auto journal = FirstPageOfJournal(name + "-journal");
@@ -150,11 +144,15 @@ std::int64_t DrawMark() {
   return std::uniform_int_distribution<std::int64_t>(1, std::int64_t{1} << 30)(random);
 }
 
-void CheckJournals(const std::string& file) {
-  std::string strange = StrangeJournal(file);
+bool IsSameMark(std::int64_t before, std::int64_t after) {
+  return SameMark(static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(after));
+}
+
+void CheckJournals(const std::string& file, const std::function<std::optional<FileState>()>& state) {
+  std::string strange = StrangeJournal(file, state());
   for (int look = 1; !strange.empty() && look < kLooks; ++look) {
     std::this_thread::sleep_for(kBetweenLooks);
-    strange = StrangeJournal(file);
+    strange = StrangeJournal(file, state());
   }
   if (!strange.empty())
     throw UserError(fmt::format(

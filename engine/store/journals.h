@@ -4,15 +4,27 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 
 namespace ed3r::store {
 
 // The mark, in SQLite's schema cookie: changes of the schema count on from it.
 std::int64_t DrawMark();
+// What the first page of a file tells of its state.
+struct FileState {
+  std::uint32_t changes = 0, mark = 0;
+  std::uint32_t pages = 0;  // a store never shrinks
+  bool operator==(const FileState&) const = default;
+};
+// Whether `after` is `before`, with changes of the schema of one session.
+bool IsSameMark(std::int64_t before, std::int64_t after);
 
 // UserError where FILE-wal or FILE-journal holds commits of another file, or of another state of it, than FILE as it is. Files
 // of before have no marks: their counts of changes are compared alone. Reads headers; while somebody writes it looks again.
-void CheckJournals(const std::string& file);
+// `state` looks at FILE itself, without what is in its journals; none where it is empty. By SQLite's own descriptor: closing
+// another one would give back the locks that this process has on it.
+void CheckJournals(const std::string& file, const std::function<std::optional<FileState>()>& state);
 
 }  // namespace ed3r::store

@@ -232,6 +232,7 @@ MergeSummary MergeStores(const std::string& out, const std::vector<std::string>&
     for (const std::vector<std::string>& of_plan : all.by_plan) AddAll(target, all, of_plan);
     MergeSummary summary = target.summary();
     summary.failed = file.database().Int("SELECT count(*) FROM failures");
+    file.CheckInPlace();
     transaction.Commit();
     return summary;
   } catch (...) {

@@ -54,6 +54,17 @@ std::vector<std::string> ShardDirs(const std::string& run_dir, const std::string
   return dirs;
 }
 
+std::vector<std::string> EmptyShardDirs(const std::string& run_dir) {
+  std::vector<std::string> dirs;
+  std::error_code error;
+  for (const fs::path& stage : Entries(fs::path(run_dir) / "shards"))
+    for (const fs::path& task : Entries(stage))
+      if (fs::exists(task / kResultsFile, error) && !HoldsResults(task.string()))
+        dirs.push_back(task.string());
+  std::sort(dirs.begin(), dirs.end());
+  return dirs;
+}
+
 std::vector<std::string> ShardDirs(const std::string& run_dir) {
   std::vector<std::string> dirs;
   for (const fs::path& stage : Entries(fs::path(run_dir) / "shards")) AddTasks(stage, dirs);

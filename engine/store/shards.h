@@ -13,5 +13,7 @@ bool HoldsResults(const std::string& dir);
 // folder; UserError where one cannot be looked into.
 std::vector<std::string> ShardDirs(const std::string& run_dir);
 std::vector<std::string> ShardDirs(const std::string& run_dir, const std::string& stage);
+// Those whose file is empty: of a task that was killed at its very start, or cut.
+std::vector<std::string> EmptyShardDirs(const std::string& run_dir);
 
 }  // namespace ed3r::store

@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <limits>
@@ -13,7 +14,6 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/utf8.h"
-#include "engine/store/journals.h"
 #include "engine/store/sqlite_errors.h"
 
 namespace ed3r::store {
@@ -104,7 +104,9 @@ void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_fi
 
 Connection::Connection(const std::string& file, Access access) : file_(file) {
   CheckFiles(file);
-  CheckJournals(file);
+  std::error_code error;
+  // SQLite takes the journals of nothing away.
+  const bool there = std::filesystem::exists(file, error);
   sqlite3* database = nullptr;
   // An absolute path, because Debian's SQLite takes a name that begins with "file:" for a URI.
   path_ = std::filesystem::absolute(file).string();
@@ -114,12 +116,33 @@ Connection::Connection(const std::string& file, Access access) : file_(file) {
   if (!database) throw StoreError(fmt::format("{}: out of memory", file));
   if (status != SQLITE_OK) Fail();
   SetBusyTimeout(kBusyTimeout_ms);
+  if (there)
+    CheckJournals(file, [this] { return StateOfFile(); });  // before the first look, which takes them up
+}
+
+std::optional<FileState> Connection::StateOfFile() const {
+  sqlite3_file* file = nullptr;
+  std::array<unsigned char, 48> bytes = {};
+  if (sqlite3_file_control(database_.get(), nullptr, SQLITE_FCNTL_FILE_POINTER, &file) != SQLITE_OK ||
+      file == nullptr || file->pMethods == nullptr ||
+      file->pMethods->xRead(file, bytes.data(), static_cast<int>(bytes.size()), 0) != SQLITE_OK)
+    return std::nullopt;
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) value = value << 8 | bytes[i];
+    return value;
+  };
+  return FileState{.changes = number(24), .mark = number(40), .pages = number(28)};
 }
 
 bool Connection::HasMoved() const {
   int moved = 0;
   return sqlite3_file_control(database_.get(), nullptr, SQLITE_FCNTL_HAS_MOVED, &moved) == SQLITE_OK &&
          moved != 0;
+}
+
+void Connection::LeaveLog() {
+  sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
 }
 
 void Connection::CheckNotReplaced() const {

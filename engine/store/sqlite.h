@@ -8,9 +8,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "engine/store/journals.h"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -35,11 +38,16 @@ class Connection {
   bool InTransaction() const;
   const std::string& file() const { return file_; }
 
+  // What the file itself tells, without what is in its journals; none where it is empty.
+  std::optional<FileState> StateOfFile() const;
   // Whether the path that was opened leads to nothing now, or to another file.
   bool HasMoved() const;
   // UserError where the path that was opened leads to another file now. What this connection reads is still the first; what
   // opens the path again would read the other. A file that is gone is no other.
   void CheckNotReplaced() const;
+
+  // The log stays beside the file when this connection is closed, instead of being written into it.
+  void LeaveLog();
 
   // Throws the error of the last call on this connection.
   [[noreturn]] void Fail() const;

@@ -133,8 +133,9 @@ class SqliteStore final : public ResultStore {
 
   void Commit() override {
     InGroup([&] {
+      file_.CheckInPlace();
       group_->Commit();
-      file_.CheckOwned();
+      file_.CheckInPlace();
     });
     group_.reset();
   }
@@ -187,6 +188,7 @@ class SqliteStore final : public ResultStore {
   }
 
   void BeginGroup() {
+    file_.CheckInPlace();
     group_.emplace(file_.database(), Transaction::Kind::kWrite);
     WriteFirstPage(file_.database());
   }

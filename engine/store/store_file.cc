@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <vector>
 
@@ -141,7 +143,15 @@ void StoreFile::CheckOwned() const {
   if (owner_ && owner_->Lost())
     throw StoreError(
         fmt::format("{}: another ed3r has taken this directory over; what is stored is kept", dir_));
-  if (database_->HasMoved())
+}
+
+void StoreFile::CheckInPlace() const {
+  const auto state = marks_.empty() ? std::nullopt : database_->StateOfFile();
+  const bool written_over = state && std::none_of(marks_.begin(), marks_.end(), [&](std::int64_t own) {
+                              return IsSameMark(own, state->mark);
+                            });
+  if (written_over) database_->LeaveLog();  // else it would be written into what is there now
+  if (written_over || database_->HasMoved())
     throw StoreError(fmt::format(
         "{}: was taken away, or another file put in its place, while it was written to: what this "
         "run has stored is not in it; the same command continues with what is there",
@@ -164,12 +174,19 @@ void StoreFile::SetJournal(bool empty) {
     // The lock is given back with the next commit, so that readers get their turn between commits.
     database_->Execute(
         "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL; PRAGMA locking_mode = NORMAL");
-    database_->Execute(mark);  // not before: it would wait for another writer while that one waits for its lock
+    marks_.clear();
+    database_->Execute(
+        mark);  // not before: it would wait for another writer while that one waits for its lock
     return;
   }
-  // A log that a killed writer has left goes on with the mark of that session.
-  if (database_->Text("PRAGMA journal_mode") != "wal") database_->Execute(mark);
+  const auto before = database_->StateOfFile();
+  // Not within a log of its own: where that is lost, the file has its mark.
+  const bool takes_up_a_log = database_->Text("PRAGMA journal_mode") == "wal";
+  if (!takes_up_a_log) database_->Execute(mark);
   database_->Execute("PRAGMA journal_mode = WAL");
+  if (takes_up_a_log) database_->Execute(mark + "; PRAGMA wal_checkpoint(TRUNCATE)");
+  marks_ = {database_->Int("PRAGMA schema_version")};
+  if (takes_up_a_log && before) marks_.push_back(before->mark);
   // A commit outlives the process at once, and a power cut costs the last commits but never the file.
   database_->Execute("PRAGMA synchronous = NORMAL");
 }
@@ -209,6 +226,7 @@ void StoreFile::TakeUp(const Recipe& recipe, const RunLayout& layout) {
 StoreFile::~StoreFile() {
   if (!database_ || rollback_journal_) return;
   try {
+    CheckInPlace();
     database_->SetBusyTimeout(0);  // a reader that is still looking is not waited for
     database_->Execute("PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode = DELETE");
   } catch (const std::exception&) {  // stays in WAL mode, which is as safe

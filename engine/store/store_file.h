@@ -1,6 +1,7 @@
 // The file of a run directory, open for writing: lock, checks, journal. Shared by the store and the merge.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -48,9 +49,10 @@ class StoreFile {
   // What was taken out so that it may grow.
   const std::vector<DamagedMission>& repaired() const { return repaired_; }
 
-  // StoreError once another writer has taken the directory over, which it does only when this one seemed dead, or once another
-  // file lies in this one's place.
+  // StoreError once another writer has taken the directory over, which it does only when this one seemed dead.
   void CheckOwned() const;
+  // StoreError once another file lies in this one's place, or was copied over it.
+  void CheckInPlace() const;
 
   // Takes away what this object created: the file, and the directories that are empty then. For what is refused after all.
   void Discard();
@@ -68,6 +70,7 @@ class StoreFile {
   std::string grown_;
   std::vector<DamagedMission> repaired_;
   bool rollback_journal_ = false;
+  std::vector<std::int64_t> marks_;  // that the file may have while this object writes (journals.h)
   // One of the two is held; both outlive the connection.
   std::unique_ptr<DirectoryLock> lock_;
   std::unique_ptr<OwnerFile> owner_;

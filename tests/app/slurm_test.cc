@@ -321,7 +321,8 @@ TEST_F(PiecesTest, ScriptsOfAnotherSweepAreTold) {
   EXPECT_TRUE(Says(missing.out, "step 1-warmup on")) << missing.out;
   const CommandResult refused = Ed3r(slurm + " --seed 4 --missing --submit");
   EXPECT_EQ(refused.status, 2);
-  EXPECT_EQ(refused.err, told + "; give the same sweep, or write the scripts anew with --force\n");
+  EXPECT_EQ(refused.err,
+            told + "; give what they were written for, or write the scripts anew with --force\n");
 }
 
 TEST_F(PiecesTest, WhatCannotBeIsRefused) {

@@ -4,6 +4,7 @@ import multiprocessing
 import os
 import pathlib
 import signal
+import subprocess
 import sys
 import tempfile
 import threading
@@ -55,6 +56,20 @@ class ProcessesTest(unittest.TestCase):
         self.addCleanup(pool.terminate)
         digests = pool.map_async(fly_child, [(sweep, stay, self.root / name) for name in ("one", "two")]).get(120)
         self.assertEqual(digests, [parent.digest()] * 2)
+
+    def test_the_interpreter_ends_while_another_thread_flies(self):
+        sweep = self.sweep(400)
+        program = ("import threading, time, sys, numpy as np, ed3r\n"
+                   "def slow(obs, info):\n"
+                   "    time.sleep(0.02)\n"
+                   "    return np.tile(np.float32([0, 0, 0, 0.5, 0, 1]), (len(obs), 1))\n"
+                   "arguments = dict(num_envs=8, threads=1, version='slow')\n"
+                   "threading.Thread(target=lambda: ed3r.fly(sys.argv[1], slow, sys.argv[2], **arguments), daemon=True).start()\n"
+                   "time.sleep(float(sys.argv[3]))\n")
+        for seconds in ("0.3", "1.5"):
+            ended = subprocess.run([sys.executable, "-c", program, sweep, self.root / "left", seconds], capture_output=True,
+                                   text=True, timeout=120)
+            self.assertEqual(ended.returncode, 0, ended.stderr)
 
     def test_an_environment_goes_on_in_a_forked_child(self):
         env, same = (ed3r.VectorEnv(self.sweep(4), "mine", num_envs=3, threads=2) for _ in range(2))

@@ -166,6 +166,7 @@ TEST(OnnxNetworkTest, TheInputsOfADecisionAreScaled) {
 
 TEST(OnnxNetworkTest, TheValuesOfADecisionAreScaled) {
   OnnxGraph graph = ParseOnnxGraph(OnnxBytes(SmallDecision(), "mine", kRcNetwork), "mine");
+  graph.metadata.clear();  // of what is changed on purpose
   graph.tensors["times"] = {{5}, {1, -1, 1, 1, 2}};
   graph.tensors["plus"] = {{5}, {0, 0, 100, 0, 1}};
   graph.nodes.push_back({"Mul", "times", {"decision", "times"}, {"t"}, {}});
@@ -197,6 +198,25 @@ TEST(OnnxNetworkTest, ADecisionOfTheWrongWidthIsRefused) {
   chain.biases.pop_back();
   EXPECT_EQ(refusal(chain, kRcNetwork),
             "mine.onnx: has 2 layers of weights and 1 of biases; allowed: as many of each, 1 or more");
+}
+
+TEST(OnnxNetworkTest, ATurnedBitIsRefusedOrChangesNothing) {
+  const DenseChain chain = SmallDecision();
+  const std::string whole = OnnxBytes(chain, "mine", kRcNetwork);
+  const std::vector<double> decision = DecisionOf(*OnnxNetwork::Parse(whole, "mine", kRcNetwork), 0.25, 0.5);
+  int refused = 0, of_seal = 0;
+  for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
+    std::string turned = whole;
+    turned[bit / 8] = static_cast<char>(turned[bit / 8] ^ (1 << bit % 8));
+    const std::string refusal = RefusalOf(turned);
+    refused += refusal != "accepted";
+    of_seal += refusal.find("does not match its metadata 'ed3r.sha256'") != std::string::npos;
+    if (refusal == "accepted") {
+      EXPECT_EQ(DecisionOf(*OnnxNetwork::Parse(turned, "turned", kRcNetwork), 0.25, 0.5), decision) << bit;
+    }
+  }
+  EXPECT_GT(of_seal, 32 * 16) << "every bit of the weights at least";
+  EXPECT_LT(refused, std::ssize(whole) * 8);
 }
 
 TEST(OnnxNetworkTest, EveryCutIsRefused) {

@@ -57,6 +57,33 @@ TEST(JournalsTest, AWriteAheadLogIsOfItsFile) {
     ExpectBound(temp / "run", temp / other, "-wal", DigestOfDir(temp / "reference"));
 }
 
+// Copies of a killed run go on apart, and a log of an earlier round is put back.
+TEST(JournalsTest, AWriteAheadLogIsOfItsRound) {
+  const TempDir temp;
+  {
+    const auto store = ResultStore::Open(temp / "run", TestRecipe(), TestLayout());
+    store->Put(kFew[0], TestRecord(kFew[0]), 0.25);
+    store->Commit();
+    CopyAsKilled(temp / "run", temp / "killed");
+    CopyAsKilled(temp / "run", temp / "twin");
+    for (int mission = 10; mission < 30; ++mission)
+      store->Put({0, 0, mission}, TestRecord({0, 0, mission}), 0.25);
+  }
+  const auto one = ResultStore::Open(temp / "killed", TestRecipe(), TestLayout());
+  one->Put(kFew[1], TestRecord(kFew[1]), 0.25);
+  one->Commit();
+  const auto other = ResultStore::Open(temp / "twin", TestRecipe(), TestLayout());
+  other->Put(kMore[0], TestRecord(kMore[0]), 0.25);
+  other->Commit();
+  WriteStore(temp / "reference", {kFew[0], kFew[1]});
+  ExpectBound(temp / "killed", temp / "run", "-wal", DigestOfDir(temp / "reference"));
+  CopyAsKilled(temp / "killed", temp / "mixed");
+  fs::copy_file(ResultsIn(temp / "twin") + "-wal", ResultsIn(temp / "mixed") + "-wal",
+                fs::copy_options::overwrite_existing);
+  EXPECT_TRUE(
+      Contains(UserErrorOf([&] { ResultReader reader(temp / "mixed"); }), "-wal is of another results"));
+}
+
 TEST(JournalsTest, ARollbackJournalIsOfItsFile) {
   const TempDir temp;
   WriteStore(temp / "before", kFew);

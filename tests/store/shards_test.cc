@@ -161,7 +161,7 @@ TEST(FinishedTest, NotWhatAnotherProcessHasMadeOfTheRun) {
   const TempDir temp;
   const std::string run = temp / "run", plan = TestRecipe().plan_text;
   WriteStore(run, {{0, 0, 1}});
-  const StateOfFile told = LookAtFile(run);
+  const FileMoment told = LookAtFile(run);
   RememberFinished(run, told, plan + "x", {"this", 1, "", ""});
   EXPECT_FALSE(RecallFinished(run, "this")) << "another plan";
   RememberFinished(run, told, plan, {"this", 2, "", ""});
@@ -170,7 +170,7 @@ TEST(FinishedTest, NotWhatAnotherProcessHasMadeOfTheRun) {
   RememberFinished(run, told, plan, {"this", 2, "", ""});
   EXPECT_FALSE(RecallFinished(run, "this")) << "another state";
   WriteStore(temp / "other", {{0, 0, 1}, {0, 0, 2}});
-  const StateOfFile of_both = LookAtFile(run);
+  const FileMoment of_both = LookAtFile(run);
   fs::rename(ResultsIn(temp / "other"), ResultsIn(run));
   RememberFinished(run, of_both, plan, {"this", 2, "", ""});
   EXPECT_FALSE(RecallFinished(run, "this")) << "another file";

@@ -256,6 +256,27 @@ TEST(StoreTest, AFileThatAnotherTookThePlaceOfIsNotWritten) {
   EXPECT_THROW(store->Commit(), StoreError);
 }
 
+// cp keeps the inode.
+TEST(StoreTest, AFileThatAnotherWasCopiedOverIsNotWritten) {
+  const TempDir temp;
+  WriteStore(temp / "run", {{0, 0, 0}});
+  std::filesystem::create_directories(temp / "backup");
+  std::filesystem::copy_file(ResultsIn(temp / "run"), ResultsIn(temp / "backup"));
+  const std::string digest = DigestOfDir(temp / "backup");
+  {
+    const auto store = OpenTest(temp / "run");
+    store->Put({0, 0, 1}, TestRecord({0, 0, 1}), 0);
+    store->Commit();
+    std::ofstream(ResultsIn(temp / "run"), std::ios::binary | std::ios::in)
+        << std::ifstream(ResultsIn(temp / "backup"), std::ios::binary).rdbuf();
+    EXPECT_THROW(store->Put({0, 0, 2}, TestRecord({0, 0, 2}), 0), StoreError);
+  }
+  EXPECT_TRUE(
+      Contains(UserErrorOf([&] { ResultReader reader(temp / "run"); }), "-wal is of another results"));
+  std::filesystem::remove(ResultsIn(temp / "run") + "-wal");
+  EXPECT_EQ(DigestOfDir(temp / "run"), digest);
+}
+
 // Forks a child that writes, and kills it when it says so. Returns once it is gone.
 template <class Write>
 void KillWriter(const Write& write) {

@@ -1,7 +1,9 @@
 """Missions of Python policies, stored as ordinary arms."""
 
 import difflib
+import atexit
 import os
+import threading
 import warnings
 
 import numpy as np
@@ -11,7 +13,24 @@ from ._core import UserError
 from ._identity import identity_of
 from ._run import Run
 
+_LONGEST_END_S = 60  # a policy's call is waited for
 _INFOS = ("mission", "timestep", "hovers", "ranges", "scs", "total_j", "battery_j")
+
+
+_ends = threading.Event()  # the interpreter
+_flights = set()  # an event each, set at the end of the call
+os.register_at_fork(after_in_child=_flights.clear)  # the parent's do not go on there
+
+
+@atexit.register
+def _end_flights():
+    """A thread that Python leaves behind must not be within the engine when the interpreter goes."""
+    if not _flights:
+        return
+    _ends.set()
+    _core.end_flights()
+    for ended in list(_flights):
+        ended.wait(_LONGEST_END_S)
 
 
 def _two_stages(policy):
@@ -41,6 +60,8 @@ def _drive(fleet, policy):
     commands = np.zeros((fleet.rows, len(_arguments.COMMANDS)), np.float32)
     executions = np.zeros(fleet.rows, np.int64)
     while not fleet.stopped:
+        if _ends.is_set():
+            raise RuntimeError("the interpreter ends; what is stored is kept")
         rows = np.flatnonzero(now["mission"] >= 0)
         if rows.size == 0:
             return
@@ -72,8 +93,14 @@ def fly(sweep, policy=None, out=None, *, seed=None, missions=None, settings=(), 
     policies = _check_policy(policy, arms)
     out = os.path.join("results", "runs", name) if out is None else _arguments.path("out", out)
     identity = identity_of(policy, version)
-    _core.fly(request, out, _arguments.path("cache", cache), identity, num_envs, threads,
-              lambda fleet: _drive(fleet, policies[fleet.arm]))
+    ended = threading.Event()
+    _flights.add(ended)
+    try:
+        _core.fly(request, out, _arguments.path("cache", cache), identity, num_envs, threads,
+                  lambda fleet: _drive(fleet, policies[fleet.arm]))
+    finally:
+        _flights.discard(ended)
+        ended.set()
     if _has_changed(policy, version, identity):
         warnings.warn(f"policy: holds other values than before it flew {out}: unless they hang on info['mission'], results "
                       "depend on the order of flight; and as it is now a second call refuses it as another policy, which a "
