@@ -46,9 +46,9 @@ RasterFile::RasterFile(const GridTerrainSpec& spec) : spec_(spec), gdal_(std::ma
   static constexpr const char* kDrivers[] = {"AAIGrid", "GTiff", nullptr};
   if (const std::string why = WhyNoRegularFile(spec.file); !why.empty()) Fail("cannot be read: " + why);
   // The absolute path: GDAL takes names with certain beginnings for other things than files.
-  const std::filesystem::path file = std::filesystem::canonical(spec.file);
+  const auto [file, problem] = NameWithNeighbours(spec.file);
+  if (!problem.empty()) Fail(problem);
   file_ = file.string();
-  if (const std::string problem = WhyNeighboursCannotBeRead(file); !problem.empty()) Fail(problem);
   gdal_->dataset.reset(
       GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, kDrivers));
   dataset_ = gdal_->dataset.get();

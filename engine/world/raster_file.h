@@ -71,7 +71,7 @@ class RasterFile {
   GDALDataset* dataset_ = nullptr;
   GDALRasterBand* band_ = nullptr;
   GDALRasterBand* mask_ = nullptr;  // 0 where there is no height; none: all have one, but for NODATA
-  std::string file_;                // canonical
+  std::string file_;                // absolute: the name that its neighbours share
   RasterUnits units_;
   double scale_ = 1.0, offset_ = 0.0;  // height in its unit = scale * value + offset
   bool north_up_ = true, in_order_ = false, signed_bytes_ = false;

@@ -4,9 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstddef>
+#include <map>
 #include <string_view>
+#include <vector>
 
+#include "engine/core/file.h"
 #include "engine/world/quiet_gdal.h"
 
 namespace ed3r::world {
@@ -32,7 +37,68 @@ bool IsUnderstood(const std::filesystem::path& aux_xml) {
   return understood;
 }
 
+// The file itself, and what a link leads to, one after another.
+std::vector<std::filesystem::path> NamesAlongLinks(const std::filesystem::path& file) {
+  const auto in_its_folder = [](const std::filesystem::path& name) {
+    return std::filesystem::canonical(name.parent_path()) / name.filename();
+  };
+  std::vector<std::filesystem::path> names = {in_its_folder(std::filesystem::absolute(file))};
+  while (std::filesystem::is_symlink(names.back()))
+    names.push_back(in_its_folder(names.back().parent_path() / std::filesystem::read_symlink(names.back())));
+  return names;
+}
+
+// By their endings in lower case.
+std::map<std::string, std::filesystem::path> Neighbours(const std::filesystem::path& file) {
+  constexpr std::array<std::string_view, 6> kForEnding = {".prj", ".tfw", ".tifw", ".tiffw", ".wld", ".tab"};
+  constexpr std::array<std::string_view, 3> kForName = {".aux.xml", ".msk", ".xml"};
+  std::map<std::string, std::filesystem::path> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(file.parent_path(), error)) {
+    const std::string name = entry.path().filename().string();
+    const auto add = [&](const std::string& begin, const auto& endings) {
+      if (!name.starts_with(begin)) return;
+      const std::string ending = LowerCase(name.substr(begin.size()));
+      if (std::find(endings.begin(), endings.end(), ending) != endings.end()) found[ending] = entry.path();
+    };
+    add(file.stem().string(), kForEnding);
+    add(file.filename().string(), kForName);
+  }
+  return found;
+}
+
+bool AreAlike(const std::filesystem::path& a, const std::filesystem::path& b) {
+  return std::filesystem::equivalent(a, b) ||
+         ReadFile(a.string(), kMaxModelBytes) == ReadFile(b.string(), kMaxModelBytes);
+}
+
 }  // namespace
+
+RasterName NameWithNeighbours(const std::filesystem::path& file) {
+  const std::vector<std::filesystem::path> names = NamesAlongLinks(file);
+  RasterName best;
+  std::map<std::string, std::filesystem::path> all, best_has;
+  for (const std::filesystem::path& name : names) {
+    if (std::string problem = WhyNeighboursCannotBeRead(name); !problem.empty()) return {name, problem};
+    const std::map<std::string, std::filesystem::path> has = Neighbours(name);
+    for (const auto& [ending, path] : has)
+      if (const auto known = all.emplace(ending, path).first; !AreAlike(known->second, path))
+        return {name, fmt::format("it is a link, and '{}' is not the same as '{}' beside what it leads to; "
+                                  "make them alike, or take one away",
+                                  known->second.string(), path.string())};
+    if (has.size() < best_has.size()) continue;
+    best.file = name;
+    best_has = has;
+  }
+  for (const auto& [ending, path] : all)
+    if (!best_has.contains(ending))
+      best.problem = fmt::format(
+          "it is a link, and what belongs to it stands in two places, '{}' and '{}'; bring all to one: "
+          "beside "
+          "the link, or beside what it leads to",
+          best_has.begin()->second.string(), path.string());
+  return best;
+}
 
 std::string WhyNeighboursCannotBeRead(const std::filesystem::path& file) {
   const std::string stem = file.stem().string(), aux_xml = file.filename().string() + ".aux.xml";

@@ -10,6 +10,14 @@ namespace ed3r::world {
 // without a word, and so its units, scale and coordinate system. GDAL must be quiet.
 std::string WhyNeighboursCannotBeRead(const std::filesystem::path& file);
 
+// The name under which a raster has everything that stands beside it. A symbolic link has two such places, beside the
+// link and beside the file that it leads to; `problem`, "" for none: they contradict each other, or each has a part.
+struct RasterName {
+  std::filesystem::path file;  // absolute
+  std::string problem;
+};
+RasterName NameWithNeighbours(const std::filesystem::path& file);
+
 // The mask beside it, whatever the case of its ending, or "".
 std::string MaskBeside(const std::filesystem::path& file);
 

@@ -9,9 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "engine/core/check.h"
-#include "engine/world/scene.h"
-#include "engine/world/terrain.h"
 #include "tests/world/test_rasters.h"
 #include "tests/world/world_files.h"
 
@@ -22,19 +19,7 @@ constexpr double kFootM = 0.3048;
 
 class RasterReadingTest : public ::testing::Test {
  protected:
-  // The height of the ground at [100, 80] m, or what was said of the file.
-  std::string Height(const std::string& file = "g.tif") const {
-    try {
-      const auto scene = Scene::Load(folder.Write("w.yaml", GridWorld(fmt::format("    file: {}\n", file))));
-      return fmt::format("{:.2f}", scene->Ground().HeightAt(100.0, 80.0));
-    } catch (const UserError& error) {
-      const std::string prefix = folder.Path(""), begin = "w.yaml:6:11: terrain.grid.file: ";
-      std::string text = error.what();
-      for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix))
-        text.erase(at, prefix.size());
-      return text.starts_with(begin) ? text.substr(begin.size()) : text;
-    }
-  }
+  std::string Height(const std::string& file = "g.tif") const { return HeightOrProblem(folder, file); }
 
   // Heights of 0 .. 44 stored, in UTM.
   TestRaster Slope() const {

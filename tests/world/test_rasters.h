@@ -1,6 +1,7 @@
-// GeoTIFFs that a test writes for itself with GDAL.
+// GeoTIFFs that a test writes for itself with GDAL, and what a world makes of them.
 #pragma once
 
+#include <fmt/format.h>
 #include <gdal_frmts.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -10,6 +11,11 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "engine/core/check.h"
+#include "engine/world/scene.h"
+#include "engine/world/terrain.h"
+#include "tests/world/world_files.h"
 
 namespace ed3r::world {
 
@@ -70,6 +76,20 @@ inline void WriteRaster(const std::string& path, const TestRaster& raster) {
               [&](int x, int y) { return raster.transparent(x, y) ? 0.0 : 255.0; });
   GDALClose(dataset);
   CPLSetThreadLocalConfigOption("GDAL_TIFF_INTERNAL_MASK", nullptr);
+}
+
+// The height of the ground at [100, 80] m on a grid of the folder, or what was said of the file.
+inline std::string HeightOrProblem(const TestFolder& folder, const std::string& file) {
+  try {
+    const auto scene = Scene::Load(folder.Write("w.yaml", GridWorld(fmt::format("    file: {}\n", file))));
+    return fmt::format("{:.2f}", scene->Ground().HeightAt(100.0, 80.0));
+  } catch (const UserError& error) {
+    const std::string prefix = folder.Path(""), begin = "w.yaml:6:11: terrain.grid.file: ";
+    std::string text = error.what();
+    for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix))
+      text.erase(at, prefix.size());
+    return text.starts_with(begin) ? text.substr(begin.size()) : text;
+  }
 }
 
 }  // namespace ed3r::world

@@ -1,0 +1,97 @@
+// What stands beside a raster counts, also beside a link, and may not contradict it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/world/test_rasters.h"
+#include "tests/world/world_files.h"
+
+namespace ed3r::world {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSurveyFootM = 1200.0 / 3937.0;
+
+const std::string kUtm =
+    "PROJCS[\"NAD_1983_UTM_Zone_10N\",GEOGCS[\"GCS_North_American_1983\",DATUM[\"D_North_American_1983\","
+    "SPHEROID[\"GRS_1980\",6378137.0,298.257222101]],PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\","
+    "0.0174532925199433]],PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"False_Easting\",500000.0],"
+    "PARAMETER[\"False_Northing\",0.0],PARAMETER[\"Central_Meridian\",-123.0],PARAMETER[\"Scale_Factor\","
+    "0.9996],PARAMETER[\"Latitude_Of_Origin\",0.0],UNIT[\"Meter\",1.0]]";
+const std::string kFeet =
+    "[\"NAVD_1988\",VDATUM[\"North_American_Vertical_Datum_1988\"],PARAMETER[\"Vertical_Shift\",0.0],"
+    "PARAMETER[\"Direction\",1.0],UNIT[\"Foot_US\",0.3048006096012192]]";
+
+class RasterNeighboursTest : public ::testing::Test {
+ protected:
+  std::string Height(const std::string& file) const { return HeightOrProblem(folder, file); }
+
+  // 44 in its unit at [100, 80] m.
+  void WriteText(const std::string& name) const {
+    fs::create_directories(fs::path(folder.Path(name)).parent_path());
+    folder.WriteGrid(name, 11, 9, 10.0, [](int column, int row) { return 2.0 * column + 3.0 * row; });
+  }
+  TestRaster Slope() const {
+    TestRaster raster;
+    raster.system = "EPSG:32610";
+    raster.stored = [](int column, int row) { return 2.0 * column + 3.0 * row; };
+    return raster;
+  }
+  void Link(const std::string& from, const std::string& to) const {
+    fs::create_symlink(to, folder.Path(from));
+  }
+
+  const std::string in_feet = fmt::format("{:.2f}", 44.0 * kSurveyFootM);
+  const TestFolder folder;
+};
+
+// A store of contents has each file in a folder of its own, and links to them beside each other.
+TEST_F(RasterNeighboursTest, WhatStandsBesideALinkCounts) {
+  WriteText("1/x.asc");
+  fs::create_directories(folder.Path("2"));
+  folder.Write("2/y.prj", kUtm + ",VERTCS" + kFeet);
+  Link("link.asc", "1/x.asc");
+  EXPECT_EQ(Height("link.asc"), "44.00");
+  Link("link.prj", "2/y.prj");
+  EXPECT_EQ(Height("link.asc"), in_feet);
+  Link("again.asc", "link.asc");
+  EXPECT_EQ(Height("again.asc"), in_feet);
+  GridTerrainSpec spec;
+  spec.file = folder.Path("again.asc");
+  EXPECT_EQ(ElevationGridFiles(spec),
+            (std::vector<std::string>{folder.Path("link.asc"), folder.Path("link.prj")}));
+}
+
+TEST_F(RasterNeighboursTest, WhatStandsBesideTheTargetOfALinkCounts) {
+  WriteText("1/x.asc");
+  folder.Write("1/x.prj", kUtm + ",VERTCS" + kFeet);
+  Link("link.asc", "1/x.asc");
+  EXPECT_EQ(Height("link.asc"), in_feet);
+  folder.Write("link.prj", kUtm + ",VERTCS" + kFeet);
+  EXPECT_EQ(Height("link.asc"), in_feet);
+  folder.Write("link.prj", kUtm);
+  EXPECT_EQ(
+      Height("link.asc"),
+      "'link.asc': it is a link, and 'link.prj' is not the same as '1/x.prj' beside what it leads to; make "
+      "them alike, or take one away");
+}
+
+TEST_F(RasterNeighboursTest, WhatBelongsToALinkStandsInOnePlace) {
+  fs::create_directories(folder.Path("1"));
+  WriteRaster(folder.Path("1/x.tif"), Slope());
+  folder.Write(
+      "1/x.tif.aux.xml",
+      "<PAMDataset><PAMRasterBand band=\"1\"><UnitType>us-ft</UnitType></PAMRasterBand></PAMDataset>");
+  Link("link.tif", "1/x.tif");
+  EXPECT_EQ(Height("link.tif"), in_feet);
+  folder.Write("link.prj", kUtm);
+  EXPECT_EQ(Height("link.tif"),
+            "'link.tif': it is a link, and what belongs to it stands in two places, '1/x.tif.aux.xml' and "
+            "'link.prj'; bring all to one: beside the link, or beside what it leads to");
+}
+
+}  // namespace
+}  // namespace ed3r::world
