@@ -30,6 +30,36 @@ std::string LowerCase(std::string text) {
   return text;
 }
 
+// The vertical coordinate system in a text, whatever the kind of WKT, from its name to its closing bracket, or "".
+std::string VerticalSystem(const std::string& text) {
+  const std::string lower = LowerCase(text);
+  const auto begins = [&](std::size_t at) {
+    if (at > 0 && (std::isalnum(static_cast<unsigned char>(lower[at - 1])) != 0 || lower[at - 1] == '_'))
+      return false;
+    for (const std::string_view name : {"vertcs", "vert_cs", "vertcrs", "verticalcrs"}) {
+      if (lower.compare(at, name.size(), name) != 0) continue;
+      const std::size_t next = lower.find_first_not_of(" \t\r\n", at + name.size());
+      if (next != std::string::npos && (lower[next] == '[' || lower[next] == '(')) return true;
+    }
+    return false;
+  };
+  constexpr std::size_t kNone = std::string::npos;
+  std::size_t begin = kNone;
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    quoted = quoted != (text[at] == '"');
+    if (quoted) continue;
+    if (begin == kNone && begins(at)) begin = at;
+    if (begin == kNone) continue;
+    depth += text[at] == '[' || text[at] == '(';
+    const bool closes = text[at] == ']' || text[at] == ')';
+    depth -= closes;
+    if (closes && depth == 0) return text.substr(begin, at + 1 - begin);
+  }
+  return begin == kNone ? "" : text.substr(begin);
+}
+
 struct Degrees {
   double longitude, latitude;
 };
@@ -75,12 +105,41 @@ class Reference {
     const std::string text = ReadFile(prj_file_, kMaxPrjBytes);
     ReadOldPrj(text);
     ReadVertical(text);
-    if (!system_.IsEmpty()) return;
+    if (!system_.IsEmpty()) return ComparePrj(text);
     char** lines = CSLTokenizeString2(text.c_str(), "\n", 0);
     const OGRErr error = system_.importFromESRI(lines);
     CSLDestroy(lines);
     if (error != OGRERR_NONE || system_.IsEmpty()) FailPrj();
     system_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  }
+
+  // One that the GeoTIFF does not need must not say otherwise. What is not understood says nothing.
+  void ComparePrj(const std::string& text) const {
+    const QuietGdal quiet;
+    OGRSpatialReference beside;
+    char** lines = CSLTokenizeString2(text.c_str(), "\n", 0);
+    const bool understood =
+        beside.importFromESRI(lines) == OGRERR_NONE || beside.importFromWkt(text.c_str()) == OGRERR_NONE;
+    CSLDestroy(lines);
+    if (understood) CompareLengths(beside, std::filesystem::path(prj_file_).filename().string());
+  }
+
+  void CompareLengths(const OGRSpatialReference& other, const std::string& where) const {
+    const std::string here = LengthWord(system_), there = LengthWord(other);
+    if (here.empty() || there.empty() || here == there) return;
+    Fail(fmt::format(
+        "its lengths are in {} by its coordinate system, and in {} by {}; correct the one that is "
+        "wrong, or take it away",
+        here, there, where));
+  }
+
+  // "m", "us-ft", "degrees"; "" where the system does not tell.
+  static std::string LengthWord(const OGRSpatialReference& system) {
+    if (system.IsGeographic()) return "degrees";
+    if (!system.IsProjected()) return "";
+    const char* name = nullptr;
+    const std::optional<LengthUnit> unit = FindLengthUnit(system.GetLinearUnits(&name));
+    return unit ? std::string(unit->name) : name == nullptr ? "" : name;
   }
 
   [[noreturn]] void FailPrj() const {
@@ -91,15 +150,11 @@ class Reference {
 
   // GDAL passes over a second system in a row of its own, and over all where the file has one itself.
   void ReadVertical(const std::string& text) {
-    const std::size_t begin = text.find("VERTCS[");
-    if (begin == std::string::npos || begin == 0) return;
-    std::string row =
-        text.substr(0, text.find_last_not_of(" \t\r\n,", begin - 1) + 1) + "," + text.substr(begin);
-    std::erase_if(row, [](char c) { return c == '\r' || c == '\n'; });
-    char* lines[] = {row.data(), nullptr};
-    OGRSpatialReference both;
-    if (both.importFromESRI(lines) != OGRERR_NONE || !both.IsCompound()) FailPrj();
-    prj_height_ = VerticalUnit(both);
+    const std::string alone = VerticalSystem(text);
+    if (alone.empty()) return;
+    OGRSpatialReference vertical;
+    if (vertical.importFromWkt(alone.c_str()) != OGRERR_NONE || !vertical.IsVertical()) FailPrj();
+    prj_height_ = VerticalUnit(vertical);
   }
 
   // Before WKT: "Zunits FEET", a line of its own.
@@ -217,14 +272,15 @@ class Reference {
     return feet ? name : "";
   }
 
-  // Of a compound coordinate system, or "".
+  // Of a compound or a vertical coordinate system, or "".
   std::string VerticalUnit(const OGRSpatialReference& system) const {
-    if (!system.IsCompound()) return "";
+    if (!system.IsCompound() && !system.IsVertical()) return "";
+    const char* const part = system.IsCompound() ? "COMPD_CS|VERT_CS" : "VERT_CS";
     OGRAxisOrientation direction = OAO_Up;
-    system.GetAxis("COMPD_CS|VERT_CS", 0, &direction);
+    system.GetAxis(part, 0, &direction);
     if (direction == OAO_Down) Fail("its heights are depths, down from the surface; allowed: heights");
     const char* name = nullptr;
-    const double metres = system.GetTargetLinearUnits("COMPD_CS|VERT_CS", &name);
+    const double metres = system.GetTargetLinearUnits(part, &name);
     const std::optional<LengthUnit> unit = FindLengthUnit(metres);
     return unit ? std::string(unit->name) : name == nullptr ? "" : name;
   }

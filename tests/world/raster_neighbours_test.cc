@@ -93,5 +93,41 @@ TEST_F(RasterNeighboursTest, WhatBelongsToALinkStandsInOnePlace) {
             "'link.prj'; bring all to one: beside the link, or beside what it leads to");
 }
 
+// Other spellings than "VERTCS[" were passed over: metres.
+TEST_F(RasterNeighboursTest, AVerticalSystemCountsHoweverItIsSpelled) {
+  const std::string old =
+      "[\"NAVD88 height (ftUS)\",VERT_DATUM[\"North American Vertical Datum 1988\",2005],UNIT[\"US survey "
+      "foot\",0.304800609601219],AXIS[\"Up\",UP]]";
+  WriteText("g.asc");
+  for (const std::string& prj :
+       {kUtm + "\nVertCS" + kFeet, kUtm + "\nVERTCS " + kFeet, kUtm + ",VertCs" + kFeet,
+        kUtm + ",VERT_CS" + old, kUtm + "\r\nvert_cs" + old + "\r\n",
+        "COMPD_CS[\"both\"," + kUtm + ",VERT_CS" + old + "]"}) {
+    folder.Write("g.prj", prj);
+    EXPECT_EQ(Height("g.asc"), in_feet) << prj;
+    WriteRaster(folder.Path("g.tif"), Slope());
+    EXPECT_EQ(Height("g.tif"), in_feet) << prj;
+  }
+  folder.Write("g.prj", kUtm + ",VERT_CS" + old.substr(0, old.rfind("UP]]")) + "DOWN]]");
+  EXPECT_EQ(Height("g.asc"), "'g.asc': its heights are depths, down from the surface; allowed: heights");
+}
+
+TEST_F(RasterNeighboursTest, APrjMayNotContradictTheLengthsOfAGeoTiff) {
+  WriteRaster(folder.Path("g.tif"), Slope());
+  folder.Write("g.prj", kUtm);
+  EXPECT_EQ(Height("g.tif"), "44.00");
+  std::string feet = kUtm;
+  feet.replace(feet.find("UNIT[\"Meter\",1.0]"), 17, "UNIT[\"Foot_US\",0.3048006096012192]");
+  folder.Write("g.prj", feet);
+  EXPECT_EQ(Height("g.tif"),
+            "'g.tif': its lengths are in m by its coordinate system, and in us-ft by g.prj; correct the one "
+            "that is wrong, or take it away");
+  folder.Write("g.prj", kUtm.substr(kUtm.find("GEOGCS"), kUtm.find(",PROJECTION") - kUtm.find("GEOGCS")));
+  EXPECT_EQ(
+      Height("g.tif"),
+      "'g.tif': its lengths are in m by its coordinate system, and in degrees by g.prj; correct the one "
+      "that is wrong, or take it away");
+}
+
 }  // namespace
 }  // namespace ed3r::world
