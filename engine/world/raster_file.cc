@@ -40,6 +40,8 @@ class RasterFile::Gdal {
     void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
   };
   std::unique_ptr<GDALDataset, Closer> dataset;
+  std::unique_ptr<GDALDataset, Closer>
+      alone;  // a GeoTIFF without the .aux.xml beside it, where one stands there
 };
 
 RasterFile::RasterFile(const GridTerrainSpec& spec) : spec_(spec), gdal_(std::make_unique<Gdal>()) {
@@ -57,8 +59,9 @@ RasterFile::RasterFile(const GridTerrainSpec& spec) : spec_(spec), gdal_(std::ma
   CheckComplaints();
   CheckBands();
   band_ = dataset_->GetRasterBand(1);
+  OpenAlone();
   CheckTransform();
-  units_ = UnitsOf(*dataset_, file, spec);
+  units_ = UnitsOf(*dataset_, gdal_->alone ? gdal_->alone->GetSpatialRef() : nullptr, file, spec);
   cell_x_m_ *= units_.length.m;
   cell_y_m_ *= units_.length.m;
   CheckBlocks();
@@ -85,6 +88,19 @@ void RasterFile::CheckComplaints() const {
                        : "mend the file (gdalinfo shows more), or write it anew (gdal_translate)"));
 }
 
+// GDAL prefers the .aux.xml to what a GeoTIFF says itself, and says nothing of it.
+void RasterFile::OpenAlone() {
+  static constexpr const char* kDrivers[] = {"GTiff", nullptr};
+  in_order_ = dataset_->GetDriver() != nullptr && EQUAL(dataset_->GetDriver()->GetDescription(), "AAIGrid");
+  std::error_code error;
+  if (in_order_ || !std::filesystem::exists(file_ + ".aux.xml", error)) return;
+  const QuietGdal quiet;  // what it complains of was said before
+  CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", "NO");
+  gdal_->alone.reset(GDALDataset::Open(file_.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kDrivers));
+  std::array<double, 6> unused;
+  if (gdal_->alone) gdal_->alone->GetGeoTransform(unused.data());  // GDAL looks for an .aux.xml only now
+}
+
 // One band of heights, and perhaps one that says where they are.
 void RasterFile::CheckBands() {
   const int bands = dataset_->GetRasterCount();
@@ -108,8 +124,20 @@ void RasterFile::CheckTransform() {
   north_up_ = transform[5] < 0.0;
   columns_ = dataset_->GetRasterXSize();
   rows_ = dataset_->GetRasterYSize();
-  in_order_ = dataset_->GetDriver() != nullptr && EQUAL(dataset_->GetDriver()->GetDescription(), "AAIGrid");
+  CheckAuxXml(transform);
   if (!in_order_) CheckWorldFiles();
+}
+
+// Where the raster lies does not matter, as the area's place is told from its corner.
+void RasterFile::CheckAuxXml(const std::array<double, 6>& transform) const {
+  constexpr double kRounded = 1e-4;
+  std::array<double, 6> own;
+  if (!gdal_->alone || gdal_->alone->GetGeoTransform(own.data()) != CE_None) return;
+  for (const std::size_t i : {1, 2, 4, 5})
+    if (!(std::abs(transform[i] - own[i]) <= kRounded * cell_x_m_))
+      Fail(fmt::format(
+          "its cells are {:g} x {:g}, and {:g} x {:g} by the .aux.xml beside it; correct it, or take it away",
+          own[1], own[5], transform[1], transform[5]));
 }
 
 // GDAL takes the cells that the file tells itself, and says nothing of others beside it.

@@ -6,6 +6,7 @@
 // Errors: UserError at the world file's key. Threads: an object belongs to one thread.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,8 +52,10 @@ class RasterFile {
 
   [[noreturn]] void Fail(const std::string& problem) const;
   void CheckComplaints() const;
+  void OpenAlone();
   void CheckBands();
   void CheckTransform();
+  void CheckAuxXml(const std::array<double, 6>& transform) const;
   void CheckWorldFiles() const;
   void CheckBlocks() const;
   void CheckText() const;

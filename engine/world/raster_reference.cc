@@ -66,12 +66,16 @@ struct Degrees {
 
 class Reference {
  public:
-  Reference(GDALDataset& dataset, const std::filesystem::path& file, const GridTerrainSpec& spec)
+  Reference(GDALDataset& dataset, const OGRSpatialReference* own, const std::filesystem::path& file,
+            const GridTerrainSpec& spec)
       : dataset_(dataset), file_(file), spec_(spec) {
     dataset.GetGeoTransform(transform_.data());
     if (const OGRSpatialReference* stored = dataset.GetSpatialRef(); stored != nullptr && !stored->IsEmpty())
       system_ = *stored;
     keys_ = ReadGeoKeys(file);
+    // A key is compared on its own: GDAL may not have understood it.
+    if (own != nullptr && UnitOfKey(keys_, kProjectedUnitsKey).empty())
+      CompareLengths(*own, system_, "the .aux.xml beside it");
     ReadPrj();
   }
 
@@ -121,11 +125,12 @@ class Reference {
     const bool understood =
         beside.importFromESRI(lines) == OGRERR_NONE || beside.importFromWkt(text.c_str()) == OGRERR_NONE;
     CSLDestroy(lines);
-    if (understood) CompareLengths(beside, std::filesystem::path(prj_file_).filename().string());
+    if (understood) CompareLengths(system_, beside, std::filesystem::path(prj_file_).filename().string());
   }
 
-  void CompareLengths(const OGRSpatialReference& other, const std::string& where) const {
-    const std::string here = LengthWord(system_), there = LengthWord(other);
+  void CompareLengths(const OGRSpatialReference& own, const OGRSpatialReference& other,
+                      const std::string& where) const {
+    const std::string here = LengthWord(own), there = LengthWord(other);
     if (here.empty() || there.empty() || here == there) return;
     Fail(fmt::format(
         "its lengths are in {} by its coordinate system, and in {} by {}; correct the one that is "
@@ -346,8 +351,9 @@ class Reference {
 
 }  // namespace
 
-RasterUnits UnitsOf(GDALDataset& dataset, const std::filesystem::path& file, const GridTerrainSpec& spec) {
-  return Reference(dataset, file, spec).Units();
+RasterUnits UnitsOf(GDALDataset& dataset, const OGRSpatialReference* own, const std::filesystem::path& file,
+                    const GridTerrainSpec& spec) {
+  return Reference(dataset, own, file, spec).Units();
 }
 
 std::string PrjBeside(const std::filesystem::path& file) {

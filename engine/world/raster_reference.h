@@ -9,6 +9,7 @@
 #include "engine/world/world_file.h"
 
 class GDALDataset;
+class OGRSpatialReference;
 
 namespace ed3r::world {
 
@@ -20,10 +21,12 @@ struct RasterUnits {
 // Refuses by UserError at the world file's key, with the command that mends it: degrees and radians, Web Mercator and
 // every projection whose metre is not one on the ground there (within kMaxScaleError), a unit that is not known, units
 // that contradict each other, heights whose unit nobody tells where lengths are not in metres.
+// `own`: the coordinate system that a GeoTIFF has itself, where an .aux.xml beside it may have replaced it, or none.
 // GDAL's errors must be silenced by the caller.
 inline constexpr double kMaxScaleError =
     0.02;  // LAEA Europe and the US' Albers stay below it, Lambert Europe does not
-RasterUnits UnitsOf(GDALDataset& dataset, const std::filesystem::path& file, const GridTerrainSpec& spec);
+RasterUnits UnitsOf(GDALDataset& dataset, const OGRSpatialReference* own, const std::filesystem::path& file,
+                    const GridTerrainSpec& spec);
 
 // The .prj beside a raster, whatever the case of its ending, or "".
 std::string PrjBeside(const std::filesystem::path& file);

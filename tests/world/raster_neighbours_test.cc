@@ -129,5 +129,20 @@ TEST_F(RasterNeighboursTest, APrjMayNotContradictTheLengthsOfAGeoTiff) {
       "that is wrong, or take it away");
 }
 
+// The .aux.xml won, without a word.
+TEST_F(RasterNeighboursTest, AnAuxXmlMayNotContradictTheCellsOfAGeoTiff) {
+  WriteRaster(folder.Path("g.tif"), Slope());
+  const auto with = [&](const std::string& transform) {
+    folder.Write("g.tif.aux.xml", "<PAMDataset><GeoTransform>" + transform + "</GeoTransform></PAMDataset>");
+    return Height("g.tif");
+  };
+  EXPECT_EQ(with("500000, 10, 0, 4000090, 0, -10"), "44.00");
+  const std::string end = " by the .aux.xml beside it; correct it, or take it away";
+  EXPECT_EQ(with("500000, 20, 0, 4000090, 0, -20"), "'g.tif': its cells are 10 x -10, and 20 x -20" + end);
+  EXPECT_EQ(with("500000, 10, 0, 4000000, 0, 10"), "'g.tif': its cells are 10 x -10, and 10 x 10" + end);
+  folder.Write("g.tfw", "20\n0\n0\n-20\n500010\n4000080\n");
+  EXPECT_EQ(with("500000, 20, 0, 4000090, 0, -20"), "'g.tif': its cells are 10 x -10, and 20 x -20" + end);
+}
+
 }  // namespace
 }  // namespace ed3r::world

@@ -178,6 +178,17 @@ TEST_F(RasterReadingTest, TheUnitOfAnUnknownSystemCounts) {
   }
 }
 
+TEST_F(RasterReadingTest, AnAuxXmlMayNotContradictTheLengthsOfAGeoTiff) {
+  WriteRaster(folder.Path("g.tif"), Slope());
+  Patch("g.tif", Key(3076, 9001), Key(5000, 9001));  // as if it were not there
+  folder.Write("g.tif.aux.xml", "<PAMDataset><SRS>EPSG:26910</SRS></PAMDataset>");
+  EXPECT_EQ(Height(), "44.00");
+  folder.Write("g.tif.aux.xml", "<PAMDataset><SRS>EPSG:2263</SRS></PAMDataset>");
+  EXPECT_EQ(Height(),
+            "'g.tif': its lengths are in m by its coordinate system, and in us-ft by the .aux.xml beside it; "
+            "correct the one that is wrong, or take it away");
+}
+
 TEST_F(RasterReadingTest, TheUnitOfHeightsBesideAVerticalSystemCounts) {
   OGRSpatialReference utm;
   utm.importFromEPSG(32633);
