@@ -62,16 +62,23 @@ std::map<int, int> ReadGeoKeys(const std::filesystem::path& file) {
 }
 
 std::string UnitOfKey(const std::map<int, int>& keys, int key) {
-  constexpr int kUndefined = 0, kMetre = 9001, kFoot = 9002, kSurveyFoot = 9003, kElsewhere = 32767;
+  constexpr int kUndefined = 0, kElsewhere = 32767;
   const auto found = keys.find(key);
   if (found == keys.end() || found->second == kUndefined || found->second == kElsewhere) return "";
+  // By their numbers in the EPSG register.
   switch (found->second) {
-    case kMetre:
+    case 9001:
       return "m";
-    case kFoot:
+    case 9002:
       return "ft";
-    case kSurveyFoot:
+    case 9003:
       return "us-ft";
+    case 9036:
+      return "km";
+    case 1033:
+      return "cm";
+    case 1025:
+      return "mm";
     default:
       return fmt::format("EPSG unit {}", found->second);
   }

@@ -208,6 +208,19 @@ TEST_F(RasterReadingTest, TheUnitOfHeightsBesideAVerticalSystemCounts) {
             "VerticalUnits, .prj); correct the one that is wrong");
 }
 
+// Was refused: "EPSG unit 9036" is the kilometre.
+TEST_F(RasterReadingTest, LengthsInKilometresAgreeWithTheirKey) {
+  TestRaster raster = Slope();
+  raster.system = "+proj=utm +zone=33 +datum=WGS84 +units=km";
+  raster.cell = 0.01;
+  raster.west = 500.0;
+  raster.south = 4000.0;
+  raster.unit = "m";
+  WriteRaster(folder.Path("g.tif"), raster);
+  Patch("g.tif", Key(3076, 9036), Key(3076, 9036));
+  EXPECT_EQ(Height(), "44.00");
+}
+
 TEST_F(RasterReadingTest, AWorldFileMustHaveTheCellsOfTheRaster) {
   WriteRaster(folder.Path("g.tif"), Slope());
   folder.Write("g.tfw", "10\n0\n0\n-10\n500005\n4000085\n");
