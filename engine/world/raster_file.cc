@@ -208,6 +208,7 @@ std::vector<double> RasterFile::Read(const CellWindow& window) const {
   constexpr double kLargestByte = 127.0, kBytes = 256.0;
   if (signed_bytes_)
     for (double& h : height) h -= h > kLargestByte ? kBytes : 0.0;
+  MarkMissingBlocks(window, height);
   CheckHoles(window, height, valid);
   CheckMarks(window, height);
   for (double& h : height) h = (scale_ * h + offset_) * units_.height.m;
@@ -235,6 +236,29 @@ void RasterFile::ReadRows(const CellWindow& window, double* raw, unsigned char* 
       Fail(fmt::format("row {} of its mask cannot be read ({})", file_row + 1, QuietGdal::LastError()));
   }
   CheckComplaints();
+}
+
+// Blocks that a sparse GeoTIFF leaves out have no heights; GDAL gives 0 for them.
+void RasterFile::MarkMissingBlocks(const CellWindow& window, std::vector<double>& raw) const {
+  const int left = window.first_column;
+  const int top = north_up_ ? rows_ - window.first_row - window.rows : window.first_row;
+  const auto is_empty = [&](int x, int y, int columns, int rows) {
+    const int status = band_->GetDataCoverageStatus(x, y, columns, rows, GDAL_DATA_COVERAGE_STATUS_DATA);
+    return status == GDAL_DATA_COVERAGE_STATUS_EMPTY;
+  };
+  int block_columns = 0, block_rows = 0;
+  band_->GetBlockSize(&block_columns, &block_rows);
+  for (int y = top; y < top + window.rows; y += block_rows - y % block_rows)
+    for (int x = left; x < left + window.columns; x += block_columns - x % block_columns) {
+      if (!is_empty(x, y, 1, 1)) continue;
+      const int end_y = std::min(y + block_rows - y % block_rows, top + window.rows);
+      const int end_x = std::min(x + block_columns - x % block_columns, left + window.columns);
+      for (int file_row = y; file_row < end_y; ++file_row) {
+        const int row = (north_up_ ? rows_ - 1 - file_row : file_row) - window.first_row;
+        double* const begin = raw.data() + static_cast<std::size_t>(row) * window.columns - left;
+        std::fill(begin + x, begin + end_x, std::numeric_limits<double>::quiet_NaN());
+      }
+    }
 }
 
 void RasterFile::CheckHoles(const CellWindow& window, const std::vector<double>& raw,

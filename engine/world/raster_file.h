@@ -62,6 +62,7 @@ class RasterFile {
   void ReadCoding();
   void CheckMask() const;
   void ReadRows(const CellWindow& window, double* raw, unsigned char* valid) const;
+  void MarkMissingBlocks(const CellWindow& window, std::vector<double>& raw) const;
   void CheckHoles(const CellWindow& window, const std::vector<double>& raw,
                   const std::vector<unsigned char>& valid) const;
   void CheckMarks(const CellWindow& window, const std::vector<double>& raw) const;

@@ -230,6 +230,27 @@ TEST_F(RasterReadingTest, AWorldFileMustHaveTheCellsOfTheRaster) {
             "'g.tif': its cells are 10 x 10, and 30 x 30 by the .tfw beside it; correct it, or take it away");
 }
 
+// Were ground at 0 m.
+TEST_F(RasterReadingTest, BlocksThatASparseGeoTiffLacksAreHoles) {
+  TestRaster raster = Slope();
+  raster.stored = [](int column, int row) { return row < 3 ? 0.0 : 5.0 + column; };
+  WriteRaster(folder.Path("full.tif"), raster);
+  EXPECT_EQ(Height("full.tif"), "16.08");  // 15, and the dip of a curve that comes from 0
+  GDALDataset* full = GDALDataset::Open(folder.Path("full.tif").c_str());
+  const char* const options[] = {"SPARSE_OK=TRUE", "TILED=YES", "BLOCKXSIZE=16", "BLOCKYSIZE=16", nullptr};
+  const char* const strips[] = {"SPARSE_OK=TRUE", "BLOCKYSIZE=3", nullptr};
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  for (const auto* how : {options, strips})
+    GDALClose(driver->CreateCopy(folder.Path(how == strips ? "g.tif" : "tiled.tif").c_str(), full, FALSE,
+                                 const_cast<char**>(how), nullptr, nullptr));
+  GDALClose(full);
+  EXPECT_EQ(Height("tiled.tif"), "16.08");
+  EXPECT_EQ(
+      Height(),
+      "'g.tif': 33 of the 99 cells that the area needs have no data (NODATA), the first at [0, 0] m from "
+      "the south-west cell; move or shrink offset_m and extent_m");
+}
+
 TEST_F(RasterReadingTest, HeightsOfEightBitsMayHaveASign) {
   TestRaster raster = Slope();
   raster.type = GDT_Byte;
