@@ -89,18 +89,20 @@ class TextGrid {
     in_line_ = 0;
   }
 
-  // GDAL takes the numbers as they come: where a row has not as many as the header says, all rows after it would be
-  // shifted.
+  // GDAL takes the numbers as they come: where there are more or fewer than the header says, rows are shifted. Lines need
+  // not be rows, but a line for each column is a header whose two numbers are exchanged.
   std::string WhyOtherHeights() const {
     const std::size_t cells = columns_ * rows_;
-    const bool in_rows =
-        !alike_ || in_first_line_ == cells || (in_first_line_ > 0 && columns_ % in_first_line_ == 0);
-    if (heights_ == cells && in_rows) return "";
+    if (heights_ != cells)
+      return fmt::format(
+          "{} heights{}, but its header says ncols {} and nrows {}, which makes {}; correct the header, or "
+          "bring the whole file",
+          heights_, alike_ ? fmt::format(", {} a line", in_first_line_) : "", columns_, rows_, cells);
+    if (!alike_ || in_first_line_ != rows_ || in_first_line_ == columns_) return "";
     return fmt::format(
-        "{} heights{}, but its header says ncols {} and nrows {}, which makes {}; correct the header, or "
-        "bring "
-        "the whole file",
-        heights_, alike_ ? fmt::format(", {} a line", in_first_line_) : "", columns_, rows_, cells);
+        "{0} lines of {1} heights each, but its header says ncols {0} and nrows {1}; exchange the two, or "
+        "bring the lines to {0} heights",
+        columns_, rows_);
   }
 
   std::size_t columns_, rows_;

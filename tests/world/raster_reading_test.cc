@@ -282,5 +282,24 @@ TEST_F(RasterReadingTest, ATextGridsHeaderSaysEachThingOnce) {
   EXPECT_EQ(Height("g.asc"), "'g.asc': line 1: ncols is '4294967308'; allowed: a whole number of 32 bits");
 }
 
+// Where one number divides the other, exchanged ones passed; lines that are no rows were refused.
+TEST_F(RasterReadingTest, ATextGridsLinesNeedNotBeItsRows) {
+  const auto says = [&](int ncols, int nrows, int in_line) {
+    std::string grid =
+        fmt::format("ncols {}\nnrows {}\nxllcorner 0\nyllcorner 0\ncellsize 10\n", ncols, nrows);
+    for (int i = 0; i < ncols * nrows; ++i)
+      grid += fmt::format("{}{}", 2 * (i % ncols) + 3 * (nrows - 1 - i / ncols),
+                          i % in_line == in_line - 1 ? "\n" : " ");
+    folder.Write("g.asc", grid);
+    return Height("g.asc");
+  };
+  EXPECT_EQ(
+      says(24, 12, 12),
+      "'g.asc': 24 lines of 12 heights each, but its header says ncols 24 and nrows 12; exchange the two, "
+      "or bring the lines to 24 heights");
+  EXPECT_EQ(says(12, 24, 12), "44.00");
+  for (const int in_line : {1, 10, 15, 30, 300}) EXPECT_EQ(says(12, 25, in_line), "44.00") << in_line;
+}
+
 }  // namespace
 }  // namespace ed3r::world

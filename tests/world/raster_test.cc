@@ -354,9 +354,14 @@ TEST_F(TextGridTest, RowsAreAsLongAsTheHeaderSays) {
   EXPECT_EQ(
       says(text(17, 12, " ")),
       "'g.asc': 192 heights, 16 a line, but its header says ncols 17 and nrows 12, which makes 204" + mend);
-  EXPECT_EQ(
-      says(text(12, 16, " ")),
-      "'g.asc': 192 heights, 16 a line, but its header says ncols 12 and nrows 16, which makes 192" + mend);
+  const auto exchanged = [](int ncols, int nrows) {
+    return fmt::format(
+        "'g.asc': {0} lines of {1} heights each, but its header says ncols {0} and nrows {1}; exchange the "
+        "two, "
+        "or bring the lines to {0} heights",
+        ncols, nrows);
+  };
+  EXPECT_EQ(says(text(12, 16, " ")), exchanged(12, 16));
   EXPECT_EQ(says(text(16, 12, " ", "1 2 3\n")),
             "'g.asc': 195 heights, but its header says ncols 16 and nrows 12, which makes 192" + mend);
 }
