@@ -24,7 +24,7 @@ struct Synonym {
   std::string_view word, name;
 };
 
-constexpr std::array<Synonym, 30> kSynonyms = {{{"metre", "m"},
+constexpr std::array<Synonym, 32> kSynonyms = {{{"metre", "m"},
                                                 {"meter", "m"},
                                                 {"metres", "m"},
                                                 {"meters", "m"},
@@ -53,7 +53,9 @@ constexpr std::array<Synonym, 30> kSynonyms = {{{"metre", "m"},
                                                 {"centimetre", "cm"},
                                                 {"centimeter", "cm"},
                                                 {"millimetre", "mm"},
-                                                {"kilometre", "km"}}};
+                                                {"millimeter", "mm"},
+                                                {"kilometre", "km"},
+                                                {"kilometer", "km"}}};
 
 // "U.S._Survey-Foot " -> "us survey foot"
 std::string Plain(std::string_view word) {

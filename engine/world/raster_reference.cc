@@ -251,12 +251,7 @@ class Reference {
     CheckSame(told, spec_.height_unit, "heights", "height_unit");
     if (told) return *told;
     if (spec_.height_unit) return *spec_.height_unit;
-    if (const std::string word = FeetWord(dataset_.GetRasterBand(1)->GetDescription()); !word.empty())
-      Fail(
-          fmt::format("its band is called '{}', and nothing else tells the unit of its heights; add "
-                      "'height_unit: ft', 'us-ft' or "
-                      "'m' to terrain.grid",
-                      word));
+    AskForNamedUnit();
     if (length.m != 1.0)
       Fail(fmt::format(
           "its lengths are in {0}, and nothing tells the unit of its heights; add 'height_unit: {0}' or "
@@ -265,16 +260,27 @@ class Reference {
     return {1.0, "m"};
   }
 
-  // A band's name that speaks of feet, or "". Nothing is concluded from it: somebody may have converted the heights.
-  static std::string FeetWord(const char* description) {
+  // Nothing is concluded from a band's name that speaks of a unit: somebody may have converted the heights.
+  void AskForNamedUnit() const {
+    const char* const description = dataset_.GetRasterBand(1)->GetDescription();
     const std::string name = description == nullptr ? "" : description;
-    char** words = CSLTokenizeString2(LowerCase(name).c_str(), " _-()[],;:/.", 0);
-    bool feet = false;
-    for (int i = 0; words != nullptr && words[i] != nullptr; ++i)
-      for (const char* word : {"ft", "feet", "foot", "usft", "ftus"})
-        feet = feet || std::string_view(words[i]) == word;
+    char** words = CSLTokenizeString2(LowerCase(name).c_str(), " _-()[]{}<>,;:=/.", 0);
+    std::string_view unit;
+    for (int i = 0; words != nullptr && words[i] != nullptr; ++i) {
+      const std::string_view word = words[i];
+      const bool plural = word.ends_with("metres") || word.ends_with("meters");
+      const std::optional<LengthUnit> found =
+          word == "usft" ? FindLengthUnit("us-ft")
+                         : FindLengthUnit(plural ? word.substr(0, word.size() - 1) : word);
+      if (found && found->m != 1.0) unit = found->name;
+    }
     CSLDestroy(words);
-    return feet ? name : "";
+    if (unit.empty()) return;
+    const bool feet = unit == "ft" || unit == "us-ft";
+    Fail(
+        fmt::format("its band is called '{}', and nothing else tells the unit of its heights; add "
+                    "'height_unit: {} or 'm' to terrain.grid",
+                    name, feet ? "ft', 'us-ft'" : fmt::format("{}'", unit)));
   }
 
   // Of a compound or a vertical coordinate system, or "".

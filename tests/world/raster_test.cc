@@ -287,21 +287,32 @@ TEST_F(RasterTest, ACellFarFromAllOthersIsAHoleOrASpike) {
   EXPECT_EQ(Message(raster), "no error");
 }
 
-TEST_F(RasterTest, ABandThatIsCalledInFeetIsAskedFor) {
+TEST_F(RasterTest, ABandThatIsCalledAUnitIsAskedFor) {
   TestRaster raster;
   raster.stored = Slope;
-  for (const char* name : {"Elevation (ft)", "DEM_feet"}) {
+  const auto call = [&](const char* name) {
     WriteRaster(folder.Path("g.tif"), raster);
     GDALDataset* dataset = GDALDataset::Open(folder.Path("g.tif").c_str(), GDAL_OF_UPDATE);
     ASSERT_NE(dataset, nullptr);
     dataset->GetRasterBand(1)->SetDescription(name);
     GDALClose(dataset);
+  };
+  for (const auto& [name, units] :
+       {std::pair("Elevation (ft)", "ft', 'us-ft'"), std::pair("DEM_feet", "ft', 'us-ft'"),
+        std::pair("z usft", "ft', 'us-ft'"), std::pair("Elevation (dm)", "dm'"),
+        std::pair("height_cm", "cm'"), std::pair("[mm]", "mm'"), std::pair("Height in decimeters", "dm'"),
+        std::pair("z: kilometres", "km'")}) {
+    call(name);
     EXPECT_EQ(
         Message("    file: g.tif\n"),
         fmt::format("'g.tif': its band is called '{}', and nothing else tells the unit of its heights; add "
-                    "'height_unit: ft', 'us-ft' or 'm' to terrain.grid",
-                    name));
+                    "'height_unit: {} or 'm' to terrain.grid",
+                    name, units));
     ExpectSlope(*Load("    file: g.tif\n    height_unit: ft\n"), 10.0, kFootM);
+  }
+  for (const char* name : {"Elevation (m)", "height_metres", "DEM"}) {
+    call(name);
+    ExpectSlope(*Load("    file: g.tif\n"), 10.0, 1.0);
   }
 }
 
