@@ -125,26 +125,34 @@ class Reference {
     const bool understood =
         beside.importFromESRI(lines) == OGRERR_NONE || beside.importFromWkt(text.c_str()) == OGRERR_NONE;
     CSLDestroy(lines);
-    if (understood) CompareLengths(system_, beside, std::filesystem::path(prj_file_).filename().string());
+    if (understood && !system_.IsGeographic())  // degrees are refused with the command that mends them
+      CompareLengths(system_, beside, std::filesystem::path(prj_file_).filename().string());
   }
 
   void CompareLengths(const OGRSpatialReference& own, const OGRSpatialReference& other,
                       const std::string& where) const {
-    const std::string here = LengthWord(own), there = LengthWord(other);
-    if (here.empty() || there.empty() || here == there) return;
+    constexpr double kRounded = 5e-7;  // as a .prj may be; the two kinds of foot are 2e-6 apart
+    const LengthWord here = WordOfLengths(own), there = WordOfLengths(other);
+    if (here.text.empty() || there.text.empty() || std::abs(here.m - there.m) <= kRounded * here.m) return;
     Fail(fmt::format(
         "its lengths are in {} by its coordinate system, and in {} by {}; correct the one that is "
         "wrong, or take it away",
-        here, there, where));
+        here.text, there.text, where));
   }
 
-  // "m", "us-ft", "degrees"; "" where the system does not tell.
-  static std::string LengthWord(const OGRSpatialReference& system) {
-    if (system.IsGeographic()) return "degrees";
-    if (!system.IsProjected()) return "";
+  struct LengthWord {
+    std::string text;  // "m", "us-ft", "degrees"; "" where the system does not tell
+    double m;          // 0 for degrees
+  };
+  static LengthWord WordOfLengths(const OGRSpatialReference& system) {
+    if (system.IsGeographic()) return {"degrees", 0.0};
+    if (!system.IsProjected()) return {"", 0.0};
     const char* name = nullptr;
-    const std::optional<LengthUnit> unit = FindLengthUnit(system.GetLinearUnits(&name));
-    return unit ? std::string(unit->name) : name == nullptr ? "" : name;
+    const double metres = system.GetLinearUnits(&name);
+    const std::optional<LengthUnit> unit = FindLengthUnit(metres);
+    return {
+        unit ? std::string(unit->name) : fmt::format("'{}' of {:g} m", name == nullptr ? "" : name, metres),
+        metres};
   }
 
   [[noreturn]] void FailPrj() const {

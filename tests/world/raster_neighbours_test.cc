@@ -122,6 +122,16 @@ TEST_F(RasterNeighboursTest, APrjMayNotContradictTheLengthsOfAGeoTiff) {
   EXPECT_EQ(Height("g.tif"),
             "'g.tif': its lengths are in m by its coordinate system, and in us-ft by g.prj; correct the one "
             "that is wrong, or take it away");
+  TestRaster raster = Slope();
+  raster.system = "EPSG:2263";
+  raster.west = 980000.0;
+  raster.south = 200000.0;
+  raster.cell = 10.0 / kSurveyFootM;
+  raster.unit = "m";
+  WriteRaster(folder.Path("feet.tif"), raster);
+  feet.replace(feet.find("0.3048006096012192"), 18, "0.3048006");  // rounded
+  folder.Write("feet.prj", feet);
+  EXPECT_EQ(Height("feet.tif"), "44.00");
   folder.Write("g.prj", kUtm.substr(kUtm.find("GEOGCS"), kUtm.find(",PROJECTION") - kUtm.find("GEOGCS")));
   EXPECT_EQ(
       Height("g.tif"),
