@@ -81,11 +81,15 @@ RasterName NameWithNeighbours(const std::filesystem::path& file) {
   for (const std::filesystem::path& name : names) {
     if (std::string problem = WhyNeighboursCannotBeRead(name); !problem.empty()) return {name, problem};
     const std::map<std::string, std::filesystem::path> has = Neighbours(name);
-    for (const auto& [ending, path] : has)
+    for (const auto& [ending, path] : has) {
+      if (std::error_code error; !std::filesystem::is_regular_file(path, error))
+        return {name, fmt::format("beside it stands {}, which is no file, or a link that leads to none",
+                                  path.filename().string())};
       if (const auto known = all.emplace(ending, path).first; !AreAlike(known->second, path))
         return {name, fmt::format("it is a link, and '{}' is not the same as '{}' beside what it leads to; "
                                   "make them alike, or take one away",
                                   known->second.string(), path.string())};
+    }
     if (has.size() < best_has.size()) continue;
     best.file = name;
     best_has = has;
@@ -94,8 +98,7 @@ RasterName NameWithNeighbours(const std::filesystem::path& file) {
     if (!best_has.contains(ending))
       best.problem = fmt::format(
           "it is a link, and what belongs to it stands in two places, '{}' and '{}'; bring all to one: "
-          "beside "
-          "the link, or beside what it leads to",
+          "beside the link, or beside what it leads to",
           best_has.begin()->second.string(), path.string());
   return best;
 }

@@ -93,6 +93,17 @@ TEST_F(RasterNeighboursTest, WhatBelongsToALinkStandsInOnePlace) {
             "'link.prj'; bring all to one: beside the link, or beside what it leads to");
 }
 
+// A store may lack the contents of a link.
+TEST_F(RasterNeighboursTest, ALinkThatLeadsNowhereIsNotPassedOver) {
+  WriteText("g.asc");
+  Link("g.prj", "store/y.prj");
+  EXPECT_EQ(Height("g.asc"),
+            "'g.asc': beside it stands g.prj, which is no file, or a link that leads to none");
+  std::filesystem::remove(folder.Path("g.prj"));
+  Link("g_old.prj", "store/y.prj");
+  EXPECT_EQ(Height("g.asc"), "44.00");
+}
+
 // Other spellings than "VERTCS[" were passed over: metres.
 TEST_F(RasterNeighboursTest, AVerticalSystemCountsHoweverItIsSpelled) {
   const std::string old =
