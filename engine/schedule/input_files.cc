@@ -62,7 +62,7 @@ store::InputFile Kept(const fs::path& path, const std::string& name) {
 }
 
 // What stands beside an elevation grid and says how it is to be read (.prj, .tfw, masks), where it will have to stand
-// again -> where it lies: beside the file that a link leads to.
+// again -> where it lies: perhaps beside the file that a link leads to.
 std::map<fs::path, fs::path> BesideGrid(const world::GridTerrainSpec& grid) {
   const fs::path place = Located(grid.file);
   std::map<fs::path, fs::path> beside;
