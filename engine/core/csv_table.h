@@ -19,7 +19,7 @@ enum class CsvComments { kNone, kHash };
 
 inline constexpr std::size_t kMaxCsvColumns = 10000;
 
-// Immutable once read; share it between threads freely.
+// Once read, and its decimal commas with it, nothing changes it; share it between threads freely.
 class CsvTable {
  public:
   // Throws UserError: unreadable or empty file, a repeated or empty column name, a row with another number of
@@ -30,6 +30,12 @@ class CsvTable {
                         char delimiter = ',');
 
   CsvTable(CsvTable&&) = default;
+
+  // Where semicolons or tabs are between the cells, decimal commas of the numbers in these columns become points; words
+  // keep theirs. To be called with all columns that are read as numbers, for they tell of each other: throws UserError
+  // where thousands may be meant, which is where some have points and some commas, or three digits after every comma
+  // (0,125 and 1234,125 are no thousands).
+  void DecimalCommasToPoints(const std::vector<std::size_t>& columns);
 
   const std::string& path() const { return path_; }
   const std::vector<std::string>& columns() const { return columns_; }

@@ -1,14 +1,15 @@
-#include "engine/core/decimal_commas.h"
-
+// CsvTable::DecimalCommasToPoints.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "engine/core/check.h"
+#include "engine/core/csv_table.h"
 #include "engine/core/message.h"
 
 namespace ed3r {
@@ -35,92 +36,69 @@ bool MayBeThousands(std::string_view number) {
   return true;
 }
 
+// The numbers of a table that have a comma, and what tells whether it is a decimal one.
 class NumberCells {
  public:
-  NumberCells(const std::string& path, std::string& text, char delimiter)
-      : path_(path), text_(text), delimiter_(delimiter) {}
+  explicit NumberCells(const CsvTable& table) : table_(table) {}
 
-  void Run(std::size_t begin) {
-    while (begin < text_.size()) {
-      const std::size_t end = std::min(text_.find('\n', begin), text_.size());
-      if (text_[begin] != '#') ReadLine(begin, end);
-      begin = end + 1;
-    }
-    if (commas_.empty()) return;
-    if (point_.size != 0)
-      Fail(
-          fmt::format("'{}' here and '{}' in line {}: a decimal comma and a decimal point, or thousands? "
-                      "allowed: one decimal sign in the whole table, and none for thousands",
-                      Number(comma_), Number(point_), LineOf(point_.begin)));
-    if (!sure_)
-      Fail(fmt::format(
-          "'{}': every number with a comma has three digits after it: decimals or thousands? "
-          "allowed: no sign for thousands (1234), and decimal points where all have three decimals",
-          Number(comma_)));
-    for (const std::size_t comma : commas_) text_[comma] = '.';
-  }
-
- private:
-  struct Cell {
-    std::size_t begin = 0, size = 0;
-  };
-
-  void ReadLine(std::size_t begin, std::size_t end) {
-    bool quoted = false;
-    for (std::size_t i = begin; i <= end; ++i) {
-      if (i < end && text_[i] == '"') quoted = !quoted;
-      if (i < end && (quoted || text_[i] != delimiter_)) continue;
-      ReadCell(begin, i);
-      begin = i + 1;
-    }
-  }
-
-  void ReadCell(std::size_t begin, std::size_t end) {
-    constexpr std::string_view kAround = " \t\r\"";
-    while (begin < end && kAround.find(text_[begin]) != std::string_view::npos) ++begin;
-    while (begin < end && kAround.find(text_[end - 1]) != std::string_view::npos) --end;
-    const Cell cell{begin, end - begin};
-    const std::string_view text = Number(cell);
+  void Look(std::size_t row, std::size_t column) {
+    const std::string_view text = table_.Cell(row, column);
     const std::size_t comma = text.find(',');
     if (comma == std::string_view::npos) {
-      if (point_.size == 0 && text.find('.') != std::string_view::npos && IsNumber(text)) point_ = cell;
+      if (!point_ && text.find('.') != std::string_view::npos && IsNumber(text)) point_ = {row, column};
       return;
     }
     std::string with_point(text);
     with_point[comma] = '.';
     const bool thousands = MayBeThousands(text);
     if (!thousands && !IsNumber(with_point)) return;
-    if (commas_.empty()) comma_ = cell;
-    commas_.push_back(begin + comma);
+    if (!comma_) comma_ = {row, column};
+    commas_.push_back(text.substr(comma, 1));
     sure_ = sure_ || !thousands;
   }
 
-  std::string_view Number(const Cell& cell) const {
-    return std::string_view(text_).substr(cell.begin, cell.size);
+  // Each within the table's text; the first of each number.
+  const std::vector<std::string_view>& DecimalCommas() const {
+    if (comma_ && point_)
+      Fail(
+          fmt::format("'{}' here and '{}' in line {}: a decimal comma and a decimal point, or thousands? "
+                      "allowed: one decimal sign in the columns that are read, and none for thousands",
+                      Text(*comma_), Text(*point_), table_.Line(point_->row)));
+    if (comma_ && !sure_)
+      Fail(fmt::format(
+          "'{}': every number with a comma has three digits after it in the columns that are "
+          "read: decimals or thousands? "
+          "allowed: no sign for thousands (1234), and decimal points where all have three decimals",
+          Text(*comma_)));
+    return commas_;
   }
 
-  std::ptrdiff_t LineOf(std::size_t place) const {
-    return 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(place), '\n');
-  }
+ private:
+  struct Place {
+    std::size_t row, column;
+  };
+
+  std::string_view Text(const Place& place) const { return table_.Cell(place.row, place.column); }
 
   [[noreturn]] void Fail(const std::string& what) const {
-    const std::size_t line = comma_.begin == 0 ? 0 : text_.rfind('\n', comma_.begin - 1) + 1;
-    throw UserError(
-        OneLine(fmt::format("{}:{}:{}: {}", path_, LineOf(comma_.begin), comma_.begin - line + 1, what)));
+    throw UserError(OneLine(table_.Where(comma_->row, comma_->column) + what));
   }
 
-  const std::string& path_;
-  std::string& text_;
-  char delimiter_;
-  std::vector<std::size_t> commas_;  // of numbers, the first of each
-  Cell comma_, point_;               // the first number with either
-  bool sure_ = false;                // that commas are decimal ones
+  const CsvTable& table_;
+  std::vector<std::string_view> commas_;
+  std::optional<Place> comma_, point_;  // the first number with either
+  bool sure_ = false;                   // that commas are decimal ones
 };
 
 }  // namespace
 
-void DecimalCommasToPoints(const std::string& path, std::string& text, std::size_t begin, char delimiter) {
-  NumberCells(path, text, delimiter).Run(begin);
+void CsvTable::DecimalCommasToPoints(const std::vector<std::size_t>& columns) {
+  if (delimiter_ == ',') return;
+  NumberCells cells(*this);
+  for (std::size_t row = 0; row < rows(); ++row)
+    for (const std::size_t column : columns) cells.Look(row, column);
+  for (const std::string_view comma : cells.DecimalCommas())
+    text_[static_cast<std::size_t>(comma.data() - text_.data())] = '.';
 }
 
 }  // namespace ed3r

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "engine/core/check.h"
-#include "engine/core/decimal_commas.h"
 
 namespace ed3r::world {
 namespace {
@@ -66,7 +65,6 @@ DelimitedText ToDelimitedText(const std::string& path, std::string text) {
   const char delimiter =
       DelimiterOf(std::string_view(text).substr(header.begin, header.end - header.begin), path);
   DelimitedText table{std::move(text), delimiter};
-  if (delimiter != ',') DecimalCommasToPoints(path, table.text, header.end, delimiter);
   if (std::string_view(table.text).substr(header.begin).starts_with(std::string("\"\"") + delimiter)) {
     table.text[header.begin] = '_';
     table.text[header.begin + 1] = '1';

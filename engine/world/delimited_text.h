@@ -10,10 +10,9 @@ struct DelimitedText {
   char delimiter = ',';
 };
 
-// Its delimiter is told by the first line that is no comment. Where it is a semicolon or a tab, decimal commas of numbers
-// become points (engine/core/decimal_commas.h); CR line ends become LF, a first column without a name (row numbers of R
-// and pandas) gets one. Bytes keep their places, so that complaints name the right line and column. Throws UserError,
-// naming `path`, for UTF-16, for cells apart by spaces, and for commas that may be for thousands.
+// Its delimiter is told by the first line that is no comment. CR line ends become LF, a first column without a name
+// (row numbers of R and pandas) gets one. Bytes keep their places, so that complaints name the right line and column.
+// Throws UserError, naming `path`, for UTF-16 and for cells apart by spaces.
 DelimitedText ToDelimitedText(const std::string& path, std::string text);
 
 }  // namespace ed3r::world

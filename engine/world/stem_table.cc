@@ -115,6 +115,10 @@ StemTable::StemTable(const StemMapSpec& spec, DelimitedText file)
   for (int q = 0; q < kStemQuantities; ++q)
     if (where_[q].column == nullptr) CheckAbsence(static_cast<StemQuantity>(q));
   CheckOneMeaning();
+  std::vector<std::size_t> read;
+  for (const Where& where : where_)
+    if (where.column != nullptr) read.push_back(where.index);
+  table_.DecimalCommasToPoints(read);
   for (const StemQuantity quantity : {kX, kY}) negative_places_[quantity] = HasNegativePlaces(quantity);
 }
 
@@ -229,7 +233,8 @@ double StemTable::FirstNumber(const std::string& header) const {
   double value = 0.0;
   const std::size_t index = table_.Column(header, "a place");
   if (table_.rows() == 0) return value;
-  const std::string_view text = table_.Cell(0, index);
+  std::string text(table_.Cell(0, index));
+  std::replace(text.begin(), text.end(), ',', '.');
   std::from_chars(text.data(), text.data() + text.size(), value);
   return value;
 }

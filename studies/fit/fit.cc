@@ -11,6 +11,7 @@
 #include "engine/core/check.h"
 #include "studies/fit/power_check.h"
 #include "studies/fit/repeated_flights.h"
+#include "studies/fit/unit_check.h"
 #include "studies/flight_logs/read_log.h"
 
 namespace ed3r::fit {
@@ -113,9 +114,11 @@ LogFormat FormatWithSettings(const flight_logs::LogTable& table, const std::stri
 
 FlightLog LoadLog(const std::vector<std::string>& paths, const std::string& format, const FitOptions& options,
                   LogUse use) {
-  const std::vector<flight_logs::LogTable> tables = ReadTables(paths, options.reading);
-  FlightLog log =
-      MakeFlightLog(tables, FormatWithSettings(tables.front(), format, options), use, options.reading);
+  std::vector<flight_logs::LogTable> tables = ReadTables(paths, options.reading);
+  const LogFormat with_settings = FormatWithSettings(tables.front(), format, options);
+  for (flight_logs::LogTable& table : tables)
+    table.DecimalCommasToPoints(NumberColumns(table, with_settings));
+  FlightLog log = MakeFlightLog(tables, with_settings, use, options.reading);
   CheckMeasuredPower(tables, log, options.gravity_mps2);
   return log;
 }

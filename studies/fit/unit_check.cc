@@ -82,6 +82,23 @@ double Quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
+std::optional<std::string> ColumnThatBegins(const flight_logs::LogTable& table, std::string_view a,
+                                            std::string_view b) {
+  for (const std::string& name : table.columns()) {
+    const std::string first = WordsOf(name).front();
+    if (first.starts_with(a) || (!b.empty() && first.starts_with(b))) return name;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> LatitudeOf(const flight_logs::LogTable& table) {
+  return ColumnThatBegins(table, "lat", "");
+}
+
+std::optional<std::string> LongitudeOf(const flight_logs::LogTable& table) {
+  return ColumnThatBegins(table, "lon", "lng");
+}
+
 class UnitCheck {
  public:
   UnitCheck(const flight_logs::LogTable& table, const LogFormat& format) : table_(table), format_(format) {}
@@ -237,21 +254,13 @@ class UnitCheck {
              Mend(meaning, guesses));
   }
 
-  std::optional<std::string> ColumnThatBegins(std::string_view a, std::string_view b) const {
-    for (const std::string& name : table_.columns()) {
-      const std::string first = WordsOf(name).front();
-      if (first.starts_with(a) || (!b.empty() && first.starts_with(b))) return name;
-    }
-    return std::nullopt;
-  }
-
   // The way along latitude and longitude against the integral of the ground speed, over steps that are long against the
   // receiver's noise.
   void CheckPath() const {
     constexpr double kStepS = 2.0, kMaxStepS = 6.0, kLeastWayM = 100.0, kEarthM = 6.371e6,
                      kRad = std::numbers::pi / 180.0;
     if (Believed("ground_speed_mps") || format_.Has("flight")) return;
-    const auto lat_name = ColumnThatBegins("lat", ""), lon_name = ColumnThatBegins("lon", "lng");
+    const auto lat_name = LatitudeOf(table_), lon_name = LongitudeOf(table_);
     if (!lat_name || !lon_name) return;
     const std::vector<double> time = Values(format_.columns.at("time_s"), "time_s"),
                               lat = Values(*lat_name, "latitude"), lon = Values(*lon_name, "longitude"),
@@ -302,6 +311,17 @@ void CheckClimbMoves(const std::string& column, const LogFormat& format, double 
 }
 
 }  // namespace
+
+std::vector<std::string> NumberColumns(const flight_logs::LogTable& table, const LogFormat& format) {
+  std::vector<std::string> names;
+  for (const auto& [meaning, column] : format.columns)
+    if (meaning != "flight") names.push_back(column);
+  for (const auto& [column, condition] : format.in_flight)
+    if (condition.words.empty()) names.push_back(column);
+  for (const auto& place : {LatitudeOf(table), LongitudeOf(table)})
+    if (place && format.Has("ground_speed_mps")) names.push_back(*place);
+  return names;
+}
 
 void CheckUnits(const flight_logs::LogTable& table, const LogFormat& format) {
   UnitCheck(table, format).Run();

@@ -66,13 +66,16 @@ class UnitColumn {
 
 class AirDataReader {
  public:
-  AirDataReader(const CsvTable& table, const LogReading& reading, int bad)
+  AirDataReader(CsvTable& table, const LogReading& reading, int bad)
       : table_(table), reading_(reading), columns_{UnitColumn(table, "time"),
                                                    UnitColumn(table, "voltage"),
                                                    UnitColumn(table, "current"),
                                                    UnitColumn(table, "speed"),
                                                    UnitColumn(table, "zSpeed", -1.0),
                                                    UnitColumn(table, "height_above_takeoff")} {
+    std::vector<std::size_t> read;
+    for (const UnitColumn& column : columns_) read.push_back(column.index());
+    table.DecimalCommasToPoints(read);
     log_ = {.path = table.path(),
             .kind = LogKind::kAirData,
             .columns = {},
@@ -141,7 +144,7 @@ bool IsAirDataLog(const CsvTable& table) {
                      [](const std::string& name) { return Lower(name) == "time(millisecond)"; });
 }
 
-DecodedLog ReadAirDataLog(const CsvTable& table, const LogReading& reading, int bad) {
+DecodedLog ReadAirDataLog(CsvTable& table, const LogReading& reading, int bad) {
   return AirDataReader(table, reading, bad).Read();
 }
 

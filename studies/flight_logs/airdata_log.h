@@ -18,7 +18,8 @@ namespace ed3r::flight_logs {
 bool IsAirDataLog(const CsvTable& table);
 
 // Throws UserError: a column that is missing or has a unit that is not known, bad cells (with skip_bad: left out and
-// counted), no current, no flight. `bad`: rows that were left out before.
-DecodedLog ReadAirDataLog(const CsvTable& table, const LogReading& reading, int bad);
+// counted), no current, no flight. `bad`: rows that were left out before. In `table`, decimal
+// commas become points.
+DecodedLog ReadAirDataLog(CsvTable& table, const LogReading& reading, int bad);
 
 }  // namespace ed3r::flight_logs

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "engine/core/check.h"
-#include "engine/core/decimal_commas.h"
 #include "engine/core/message.h"
 
 namespace ed3r::flight_logs {
@@ -84,11 +83,10 @@ class Standard {
       if (IsComment(line) || (columns_ == 0 && IsSeparatorLine(line)))
         text_[begin_] = '#';
       else if (columns_ == 0)
-        ReadHeader(line), rows_begin_ = next;
+        ReadHeader(line);
       else
         ReadRow(line);
     }
-    if (delimiter_ != ',') DecimalCommasToPoints(path_, text_, rows_begin_, delimiter_);
     return {delimiter_, bad_};
   }
 
@@ -141,7 +139,7 @@ class Standard {
   std::string& text_;
   bool skip_bad_;
   char delimiter_ = ',', forced_ = 0;
-  std::size_t columns_ = 0, begin_ = 0, rows_begin_ = 0;
+  std::size_t columns_ = 0, begin_ = 0;
   int number_ = 1, bad_ = 0;
 };
 

@@ -1,7 +1,6 @@
 // CSV as people have it, to CSV as CsvTable reads it.
 //
-// Columns may be separated by semicolons or tabs (numbers may then have decimal commas), lines may end in CR, and lines
-// that begin with #, % or // or that say sep=; are comments. Characters are replaced one for one, so that lines and columns
+// Columns may be separated by semicolons or tabs, lines may end in CR, and lines that begin with #, % or // or that say sep=; are comments. Characters are replaced one for one, so that lines and columns
 // in messages are those of the file.
 #pragma once
 
@@ -15,8 +14,7 @@ struct StandardCsv {
   int bad = 0;  // rows left out
 };
 
-// Throws UserError: no header line, columns that nothing separates, decimal commas between commas, commas that may be for
-// thousands (engine/core/decimal_commas.h). With skip_bad, rows with another number of cells than the header become
+// Throws UserError: no header line, columns that nothing separates, decimal commas between commas. With skip_bad, rows with another number of cells than the header become
 // comments and are counted.
 StandardCsv ToStandardCsv(const std::string& path, std::string text, bool skip_bad);
 

@@ -27,6 +27,15 @@ int LogTable::Line(std::size_t row) const {
   return log_.lines.empty() ? 0 : log_.lines[row];
 }
 
+void LogTable::DecimalCommasToPoints(const std::vector<std::string>& columns) {
+  if (!csv_) return;
+  std::vector<std::size_t> indices;
+  for (const std::string& name : columns)
+    if (Has(name)) indices.push_back(csv_->Column(name, ""));
+  std::sort(indices.begin(), indices.end());
+  csv_->DecimalCommasToPoints(indices);
+}
+
 bool LogTable::Has(std::string_view name) const {
   return std::find(columns().begin(), columns().end(), name) != columns().end();
 }

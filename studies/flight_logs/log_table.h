@@ -41,7 +41,7 @@ struct DecodedLog {
   int bad = 0;                     // rows or messages left out as unreadable (LogReading::skip_bad)
 };
 
-// Immutable once made; share it between threads freely.
+// Once made, and its decimal commas read, nothing changes it; share it between threads freely.
 class LogTable {
  public:
   LogTable(CsvTable table)
@@ -60,6 +60,9 @@ class LogTable {
   bool TellsGround() const { return !log_.on_ground.empty() && !log_.ground_by_height; }
   bool OnGround(std::size_t row) const { return !log_.on_ground.empty() && log_.on_ground[row]; }
   int Line(std::size_t row) const;  // 0 where the file has no lines
+
+  // Of a CSV file: CsvTable::DecimalCommasToPoints for those of these columns that are there.
+  void DecimalCommasToPoints(const std::vector<std::string>& columns);
 
   bool Has(std::string_view name) const;
   // As in CsvTable; a decoded value that is not there is no number.

@@ -17,11 +17,20 @@ std::string Standard(const std::string& text, bool skip_bad = false) {
   return ToStandardCsv("x.csv", text, skip_bad).text;
 }
 
+LogTable WithPoints(const std::string& text, const std::vector<std::string>& columns) {
+  LogTable log = ParseLog("x.csv", text, {});
+  log.DecimalCommasToPoints(columns);
+  return log;
+}
+
 TEST(CsvDialectTest, SemicolonsAndTabsWithDecimalCommas) {
-  EXPECT_EQ(Standard("t;p\n0,5;400,25\n"), "t;p\n0.5;400.25\n");
-  EXPECT_EQ(Standard("t\tp\n0,5\t400\n"), "t\tp\n0.5\t400\n");
+  for (const std::string text : {"t;p\n0,5;400,25\n", "t\tp\n0,5\t400,25\n"}) {
+    const LogTable log = WithPoints(text, {"t", "p", "not there"});
+    EXPECT_EQ(log.Number(0, 0, 0, 10), 0.5);
+    EXPECT_EQ(log.Number(0, 1, 0, 1000), 400.25);
+  }
   EXPECT_EQ(Standard("sep=;\nt;p\n1;2\n"), "#ep=;\nt;p\n1;2\n");
-  const LogTable log = ParseLog("x.csv", "\xEF\xBB\xBF\"time\";\"speed\"\r\n0,5;1,25\r\n1;2\r\n", {});
+  const LogTable log = WithPoints("\xEF\xBB\xBF\"time\";\"speed\"\r\n0,5;1,25\r\n1;2\r\n", {"time", "speed"});
   EXPECT_EQ(log.columns(), (std::vector<std::string>{"time", "speed"}));
   EXPECT_DOUBLE_EQ(log.Number(0, 1, 0, 10), 1.25);
 }
@@ -31,7 +40,7 @@ TEST(CsvDialectTest, CommasOfWordsStay) {
   for (const char delimiter : {';', '\t'}) {
     std::string text = "t|current, A|state\n0,5|1,25|cruise, fast\n1|2,5|\"hover, low\"\n";
     std::replace(text.begin(), text.end(), '|', delimiter);
-    const LogTable log = ParseLog("x.csv", text, {});
+    const LogTable log = WithPoints(text, {"t", "current, A", "state"});
     EXPECT_EQ(log.columns(), (std::vector<std::string>{"t", "current, A", "state"}));
     EXPECT_EQ(log.Number(0, 1, 0, 10), 1.25);
     EXPECT_EQ(log.Cell(0, 2), "cruise, fast");
@@ -40,16 +49,31 @@ TEST(CsvDialectTest, CommasOfWordsStay) {
 }
 
 TEST(CsvDialectTest, ThousandsCommasAreRefused) {
-  const auto complaint = [](const std::string& text) { return Complaint([&] { Standard(text); }); };
-  EXPECT_EQ(complaint("t\tp\n0.5\t900\n1\t1,023\n"),
-            "x.csv:3:3: '1,023' here and '0.5' in line 2: a decimal comma and a decimal point, or thousands? "
-            "allowed: "
-            "one decimal sign in the whole table, and none for thousands");
+  const auto complaint = [](const std::string& text) {
+    return Complaint([&] { WithPoints(text, {"t", "p"}); });
+  };
+  EXPECT_EQ(
+      complaint("t\tp\n0.5\t900\n1\t1,023\n"),
+      "x.csv:3:3: p: '1,023' here and '0.5' in line 2: a decimal comma and a decimal point, or thousands? "
+      "allowed: "
+      "one decimal sign in the columns that are read, and none for thousands");
   EXPECT_EQ(complaint("t;p\n0;900\n1;\"1,023\"\n2;12,345,678\n"),
-            "x.csv:3:4: '1,023': every number with a comma has three digits after it: decimals or thousands? "
+            "x.csv:3:3: p: '1,023': every number with a comma has three digits after it in the columns that "
+            "are read: decimals or thousands? "
             "allowed: no sign for thousands (1234), and decimal points where all have three decimals");
   for (const char* sure : {"0,125", "1234,125", "1,5", "-0,5", "1,2345", ",125"})
     EXPECT_EQ(complaint(fmt::format("t;p\n0;1,023\n1;{}\n", sure)), "") << sure;
+}
+
+TEST(CsvDialectTest, ColumnsThatAreNotReadTellNothingOfCommas) {
+  for (const char* firmware : {"4.1", "1,4", "1,400"}) {
+    const std::string text = fmt::format("t;p;firmware\n0,5;400,25;{}\n", firmware);
+    EXPECT_EQ(WithPoints(text, {"t", "p"}).Number(0, 1, 0, 1000), 400.25);
+  }
+  EXPECT_EQ(Complaint([] {
+              WithPoints("t;p;code\n0;1,023;1,4\n", {"t", "p"});
+            }).substr(0, 19),
+            "x.csv:2:3: p: '1,02");
 }
 
 TEST(CsvDialectTest, CommentsBlankLinesAndLineEnds) {

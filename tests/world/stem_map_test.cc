@@ -96,14 +96,28 @@ TEST_F(StemMapTest, ComplaintsNameThePlaceInTheFileAsItIs) {
 // Places of 1,023 m became 1.023 m, beside others of 900 m.
 TEST_F(StemMapTest, ThousandsCommasAreRefused) {
   const std::string header = "x_m\ty_m\tdbh_cm\theight_m\tcrown_depth_m\tcrown_radius_m\n";
-  EXPECT_EQ(
-      Message(header + "900\t7\t20\t15\t8\t2\n1,023\t57\t30\t21.5\t9\t2.5\n"),
-      "stems.csv:3:1: '1,023' here and '21.5' in line 3: a decimal comma and a decimal point, or thousands? "
-      "allowed: one decimal sign in the whole table, and none for thousands");
-  EXPECT_EQ(
-      Message(header + "900\t7\t20\t15\t8\t2\n1,023\t57\t30\t21\t9\t2\n"),
-      "stems.csv:3:1: '1,023': every number with a comma has three digits after it: decimals or thousands? "
-      "allowed: no sign for thousands (1234), and decimal points where all have three decimals");
+  EXPECT_EQ(Message(header + "900\t7\t20\t15\t8\t2\n1,023\t57\t30\t21.5\t9\t2.5\n"),
+            "stems.csv:3:1: x_m: '1,023' here and '21.5' in line 3: a decimal comma and a decimal point, or "
+            "thousands? "
+            "allowed: one decimal sign in the columns that are read, and none for thousands");
+  EXPECT_EQ(Message(header + "900\t7\t20\t15\t8\t2\n1,023\t57\t30\t21\t9\t2\n"),
+            "stems.csv:3:1: x_m: '1,023': every number with a comma has three digits after it in the columns "
+            "that are read: decimals or thousands? "
+            "allowed: no sign for thousands (1234), and decimal points where all have three decimals");
+}
+
+TEST_F(StemMapTest, ColumnsThatAreNotReadTellNothingOfCommas) {
+  const std::string header = "code;x_m;y_m;dbh_cm;height_m;crown_depth_m;crown_radius_m\n";
+  EXPECT_EQ(Message(header + "1,4;900;7;20;15;8;2\n2;1,023;57;30;21;9;2\n"),
+            "stems.csv:3:3: x_m: '1,023': every number with a comma has three digits after it in the columns "
+            "that are read: decimals or thousands? "
+            "allowed: no sign for thousands (1234), and decimal points where all have three decimals");
+  for (const char* code : {"1.2", "29.11", "1,4", "1,400", "1.234,5"}) {
+    EXPECT_EQ(Read(header + code + ";3;7;20;15;8;2\n2;63,5;57;30;21,5;9;2,5\n").size_m,
+              Eigen::Vector2d(60.5, 50));
+    EXPECT_EQ(Read(header + code + ";3;7;20;15;8;2\n2;63.5;57;30;21.5;9;2.5\n").size_m,
+              Eigen::Vector2d(60.5, 50));
+  }
 }
 
 // One such row, and the stand was a kilometre wide.
