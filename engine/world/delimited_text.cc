@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "engine/core/check.h"
+#include "engine/core/message.h"
 
 namespace ed3r::world {
 namespace {
@@ -50,6 +51,25 @@ char DelimiterOf(std::string_view header, const std::string& path) {
   return ',';
 }
 
+// A row whose first cell is #17 would be left out as a comment.
+void CheckComments(const std::string& path, std::string_view text, const Line& header, char delimiter) {
+  const std::size_t between =
+      CountOutsideQuotes(text.substr(header.begin, header.end - header.begin), delimiter);
+  std::size_t begin = header.end + 1;
+  while (between > 0 && begin < text.size()) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    if (line.starts_with('#') && CountOutsideQuotes(line, delimiter) == between)
+      throw UserError(OneLine(fmt::format(
+          "{}:{}:1: '{}' begins with # and has as many cells as the header: a row or a comment? "
+          "allowed: a row that begins with another sign (the cell in quotes will do: \"#1\"), or no "
+          "such line",
+          path, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(begin), '\n'),
+          line.substr(0, line.find(delimiter)))));
+    begin = end + 1;
+  }
+}
+
 }  // namespace
 
 DelimitedText ToDelimitedText(const std::string& path, std::string text) {
@@ -64,6 +84,7 @@ DelimitedText ToDelimitedText(const std::string& path, std::string text) {
   const Line header = FindHeader(text);
   const char delimiter =
       DelimiterOf(std::string_view(text).substr(header.begin, header.end - header.begin), path);
+  CheckComments(path, text, header, delimiter);
   DelimitedText table{std::move(text), delimiter};
   if (std::string_view(table.text).substr(header.begin).starts_with(std::string("\"\"") + delimiter)) {
     table.text[header.begin] = '_';

@@ -12,7 +12,8 @@ struct DelimitedText {
 
 // Its delimiter is told by the first line that is no comment. CR line ends become LF, a first column without a name
 // (row numbers of R and pandas) gets one. Bytes keep their places, so that complaints name the right line and column.
-// Throws UserError, naming `path`, for UTF-16 and for cells apart by spaces.
+// Throws UserError, naming `path`, for UTF-16, for cells apart by spaces, and for a line that begins with # and
+// has as many cells as the header: it may be a row.
 DelimitedText ToDelimitedText(const std::string& path, std::string text);
 
 }  // namespace ed3r::world

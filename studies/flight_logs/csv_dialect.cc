@@ -70,8 +70,7 @@ class Standard {
       if (text_[i] == '\r' && (i + 1 == text_.size() || text_[i + 1] != '\n')) text_[i] = '\n';
   }
 
-  // The delimiter, and the rows left out.
-  std::pair<char, int> Run() {
+  void Run() {
     std::size_t next = text_.starts_with("\xEF\xBB\xBF") ? 3 : 0;
     for (number_ = 1; next < text_.size(); ++number_) {
       begin_ = next;
@@ -81,16 +80,24 @@ class Standard {
       if (line.ends_with('\r')) line.remove_suffix(1);
       if (LeftTrimmed(line).empty()) continue;
       if (IsComment(line) || (columns_ == 0 && IsSeparatorLine(line)))
-        text_[begin_] = '#';
+        LeaveOut(line);
       else if (columns_ == 0)
         ReadHeader(line);
       else
         ReadRow(line);
     }
-    return {delimiter_, bad_};
   }
 
+  char delimiter() const { return delimiter_; }
+  int bad() const { return bad_; }
+  int comment_rows() const { return comment_rows_; }
+
  private:
+  void LeaveOut(std::string_view comment) {
+    comment_rows_ += columns_ > 1 && Cells(comment, delimiter_).size() == columns_;
+    text_[begin_] = '#';
+  }
+
   bool IsSeparatorLine(std::string_view line) {
     if (line.size() != 5 || !line.starts_with("sep=")) return false;
     forced_ = line[4];
@@ -140,14 +147,15 @@ class Standard {
   bool skip_bad_;
   char delimiter_ = ',', forced_ = 0;
   std::size_t columns_ = 0, begin_ = 0;
-  int number_ = 1, bad_ = 0;
+  int number_ = 1, bad_ = 0, comment_rows_ = 0;
 };
 
 }  // namespace
 
 StandardCsv ToStandardCsv(const std::string& path, std::string text, bool skip_bad) {
-  const auto [delimiter, bad] = Standard(path, text, skip_bad).Run();
-  return {std::move(text), delimiter, bad};
+  Standard standard(path, text, skip_bad);
+  standard.Run();
+  return {std::move(text), standard.delimiter(), standard.bad(), standard.comment_rows()};
 }
 
 }  // namespace ed3r::flight_logs

@@ -11,7 +11,8 @@ namespace ed3r::flight_logs {
 struct StandardCsv {
   std::string text;
   char delimiter = ',';
-  int bad = 0;  // rows left out
+  int bad = 0;           // rows left out
+  int comment_rows = 0;  // comments with as many cells as the header: they may be rows
 };
 
 // Throws UserError: no header line, columns that nothing separates, decimal commas between commas. With skip_bad, rows with another number of cells than the header become

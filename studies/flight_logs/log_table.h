@@ -47,7 +47,9 @@ class LogTable {
   LogTable(CsvTable table)
       : csv_(std::move(table)) {}  // NOLINT(google-explicit-constructor): a CSV file is a log
   // bad: rows that were left out before the table was made.
-  LogTable(CsvTable table, int bad) : csv_(std::move(table)), bad_(bad) {}
+  LogTable(CsvTable table, int bad, std::vector<std::string> notes) : csv_(std::move(table)), bad_(bad) {
+    log_.notes = std::move(notes);
+  }
   explicit LogTable(DecodedLog log);
 
   LogKind kind() const { return csv_ ? LogKind::kCsv : log_.kind; }

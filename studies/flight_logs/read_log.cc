@@ -1,9 +1,15 @@
 #include "studies/flight_logs/read_log.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/core/message.h"
 #include "studies/flight_logs/airdata_log.h"
 #include "studies/flight_logs/ardupilot_log.h"
 #include "studies/flight_logs/csv_dialect.h"
@@ -40,8 +46,16 @@ LogTable ParseLog(const std::string& path, std::string bytes, const LogReading& 
     throw UserError(path + ": ArduPilot's log as text; give the .bin file that it was made from");
   StandardCsv csv = ToStandardCsv(path, std::move(bytes), reading.skip_bad);
   CsvTable table = CsvTable::Parse(path, std::move(csv.text), CsvComments::kHash, csv.delimiter);
-  if (IsAirDataLog(table)) return LogTable(ReadAirDataLog(table, reading, csv.bad));
-  return LogTable(std::move(table), csv.bad);
+  std::vector<std::string> notes;
+  if (csv.comment_rows > 0)
+    notes.push_back(OneLine(fmt::format(
+        "{}: {} line{} left out as comment{}, though with as many cells as the header: "
+        "lines that begin with #, % or //",
+        path, csv.comment_rows, csv.comment_rows == 1 ? "" : "s", csv.comment_rows == 1 ? "" : "s")));
+  if (!IsAirDataLog(table)) return LogTable(std::move(table), csv.bad, std::move(notes));
+  DecodedLog log = ReadAirDataLog(table, reading, csv.bad);
+  log.notes.insert(log.notes.end(), notes.begin(), notes.end());
+  return LogTable(std::move(log));
 }
 
 }  // namespace ed3r::flight_logs

@@ -85,6 +85,15 @@ TEST(CsvDialectTest, CommentsBlankLinesAndLineEnds) {
   EXPECT_EQ(log.WhereRow(1), "x.csv:9:1: ");
 }
 
+TEST(CsvDialectTest, CommentsThatMayBeRowsAreCounted) {
+  const LogTable log = ParseLog("x.csv", "# a,b\nt,p\n1,2\n// leg,2\n# no row\n#3,4\n", {});
+  EXPECT_EQ(log.rows(), 1u);
+  EXPECT_EQ(log.notes(),
+            std::vector<std::string>{"x.csv: 2 lines left out as comments, though with as many cells as the "
+                                     "header: lines that begin with #, % or //"});
+  EXPECT_TRUE(ParseLog("x.csv", "# a,b\nt,p\n1,2\n# no row\n", {}).notes().empty());
+}
+
 TEST(CsvDialectTest, NamesWhatItCannotRead) {
   const auto complaint = [](const std::string& text) { return Complaint([&] { Standard(text); }); };
   EXPECT_EQ(complaint("t,p\n0,5,400,25\n"),

@@ -120,6 +120,17 @@ TEST_F(StemMapTest, ColumnsThatAreNotReadTellNothingOfCommas) {
   }
 }
 
+// Were left out without a word.
+TEST_F(StemMapTest, ARowThatBeginsAsACommentIsRefused) {
+  const std::string text =
+      "# by A, B, C, D, E, and F\nid," + kHeader + "# plot 2, surveyed twice\na,3,7,20,15,8,2\n";
+  EXPECT_EQ(Message(text + "#2,63,57,30,21.5,9,2.5\n"),
+            "stems.csv:5:1: '#2' begins with # and has as many cells as the header: a row or a comment? "
+            "allowed: a row that begins with another sign (the cell in quotes will do: \"#1\"), or no such "
+            "line");
+  EXPECT_EQ(Read(text + "\"#2\",63,57,30,21.5,9,2.5\n").stems.size(), 2u);
+}
+
 // One such row, and the stand was a kilometre wide.
 TEST_F(StemMapTest, AMissingPlaceIsNoPlace) {
   for (const char* mark : {"-99", "-999", "-999.0", "-9999"})
