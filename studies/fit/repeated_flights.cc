@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <tuple>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
 
 #include "engine/core/check.h"
 
@@ -17,12 +20,55 @@ struct Part {
   const std::string& File() const { return log->files[flight->table]; }
 };
 
+// What a copy has of a row, and when.
 struct Sample {
-  std::tuple<double, double, double> values;
+  double power_w, airspeed_mps, time_s;
   std::size_t part;
 
   auto operator<=>(const Sample&) const = default;
 };
+
+// Of the log as it is, or of a copy whose clock starts at 0.
+enum class Clock { kAsRecorded, kFromFirstRow };
+
+// Stamps that were rounded move by less: rows would meet otherwise.
+double HalfStepS(const Flight& flight) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < flight.rows.size(); ++i)
+    steps.push_back(flight.rows[i].time_s - flight.rows[i - 1].time_s);
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  constexpr double kRounding = 1e-6;  // of sums of decimal fractions
+  return 0.5 * *middle * (1.0 + kRounding);
+}
+
+std::vector<Sample> SamplesOf(const std::vector<Part>& parts, Clock clock) {
+  std::vector<Sample> samples;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const std::vector<FlightRow>& rows = parts[p].flight->rows;
+    const double zero_s = clock == Clock::kAsRecorded ? 0.0 : rows.front().time_s;
+    for (const FlightRow& row : rows)
+      samples.push_back({row.power_w, row.airspeed_mps, row.time_s - zero_s, p});
+  }
+  std::sort(samples.begin(), samples.end());
+  return samples;
+}
+
+// The part of the next sample on one side that has the same numbers at the same time and is another's.
+std::optional<std::size_t> OtherBeside(const std::vector<Sample>& samples, std::size_t i, int side,
+                                       double most_s) {
+  const Sample& own = samples[i];
+  for (std::size_t k = i + static_cast<std::size_t>(side); k < samples.size();
+       k += static_cast<std::size_t>(side)) {
+    const Sample& other = samples[k];
+    if (other.power_w != own.power_w || other.airspeed_mps != own.airspeed_mps ||
+        std::abs(other.time_s - own.time_s) > most_s)
+      break;
+    if (other.part != own.part) return other.part;
+  }
+  return std::nullopt;
+}
 
 [[noreturn]] void Refuse(const Part& first, const Part& second, const FlightLog* evaluated) {
   const bool seen = second.log == evaluated && first.log != evaluated;
@@ -33,25 +79,19 @@ struct Sample {
                   seen ? "only flights that the fit has not seen judge it" : "a flight counts once"));
 }
 
-// For each part the number of its rows that another one has too, and the first of these others.
-void CheckParts(const std::vector<Part>& parts, const FlightLog* evaluated) {
-  std::vector<Sample> samples;
-  for (std::size_t p = 0; p < parts.size(); ++p)
-    for (const FlightRow& row : parts[p].flight->rows)
-      samples.push_back({{row.time_s, row.power_w, row.airspeed_mps}, p});
-  std::sort(samples.begin(), samples.end());
+// Counts for each part its rows that another one has too.
+void CheckParts(const std::vector<Part>& parts, const FlightLog* evaluated, Clock clock) {
+  const std::vector<Sample> samples = SamplesOf(parts, clock);
+  std::vector<double> half_steps_s;
+  for (const Part& part : parts) half_steps_s.push_back(HalfStepS(*part.flight));
   std::vector<std::size_t> shared(parts.size(), 0);
-  for (std::size_t begin = 0; begin < samples.size();) {
-    std::size_t end = begin;
-    while (end < samples.size() && samples[end].values == samples[begin].values) ++end;
-    for (std::size_t i = begin; i < end && samples[begin].part != samples[end - 1].part; ++i) {
-      const std::size_t p = samples[i].part;
-      if (static_cast<double>(++shared[p]) <= kSameShare * static_cast<double>(parts[p].flight->rows.size()))
-        continue;
-      const std::size_t other = samples[samples[begin].part == p ? end - 1 : begin].part;
-      Refuse(parts[std::min(p, other)], parts[std::max(p, other)], evaluated);
-    }
-    begin = end;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::size_t p = samples[i].part;
+    std::optional<std::size_t> other = OtherBeside(samples, i, -1, half_steps_s[p]);
+    if (!other) other = OtherBeside(samples, i, 1, half_steps_s[p]);
+    if (!other) continue;
+    if (static_cast<double>(++shared[p]) > kSameShare * static_cast<double>(parts[p].flight->rows.size()))
+      Refuse(parts[std::min(p, *other)], parts[std::max(p, *other)], evaluated);
   }
 }
 
@@ -62,7 +102,7 @@ void CheckNoFlightTwice(const FlightLog& fitted, const FlightLog* evaluated) {
   for (const Flight& flight : fitted.flights) parts.push_back({&fitted, &flight});
   if (evaluated != nullptr)
     for (const Flight& flight : evaluated->flights) parts.push_back({evaluated, &flight});
-  CheckParts(parts, evaluated);
+  for (const Clock clock : {Clock::kAsRecorded, Clock::kFromFirstRow}) CheckParts(parts, evaluated, clock);
 }
 
 }  // namespace ed3r::fit
