@@ -76,27 +76,30 @@ CsvTable CsvTable::Parse(std::string path, std::string text, CsvComments comment
     } else if (first_blank != 0) {
       throw UserError(fmt::format("{}:{}:1: blank line inside the table", table.path_, first_blank));
     } else if (table.columns_.empty()) {
-      table.ReadHeader(line, number);
+      table.ReadHeader(line, number, comments);
     } else {
       table.ReadRow(begin, line, number);
     }
   }
   if (table.columns_.empty())
     throw UserError(fmt::format("{}:1:1: empty file; a header line was expected", table.path_));
+  if (comments == CsvComments::kHash) table.DropBlankRowsAtEnd();
   return table;
 }
 
-void CsvTable::ReadHeader(std::string_view line, int number) {
+void CsvTable::ReadHeader(std::string_view line, int number, CsvComments comments) {
   header_line_ = number;
   std::set<std::string, std::less<>> names;
   ForEachCell(line, delimiter_, [&](std::size_t begin, std::size_t end) {
-    const std::string name(Trimmed(line.substr(begin, end - begin)));
+    std::string name(Trimmed(line.substr(begin, end - begin)));
     const auto refuse = [&](const std::string& problem) {
       throw UserError(OneLine(fmt::format("{}:{}:{}: {}", path_, number, begin + 1, problem)));
     };
     if (columns_.size() == kMaxCsvColumns)
       refuse(fmt::format("more columns than are allowed ({})", kMaxCsvColumns));
-    if (name.empty()) refuse(fmt::format("column {} has no name", columns_.size() + 1));
+    if (name.empty() && comments == CsvComments::kNone)
+      refuse(fmt::format("column {} has no name", columns_.size() + 1));
+    if (name.empty()) name = fmt::format("column {}", columns_.size() + 1);
     if (!names.insert(name).second) refuse(fmt::format("column '{}' is there twice", name));
     columns_.push_back(name);
   });
@@ -116,6 +119,20 @@ void CsvTable::ReadRow(std::size_t begin, std::string_view line, int number) {
                                 line.size() + 1, found, columns_.size()));
   row_begin_.push_back(begin);
   row_line_.push_back(number);
+}
+
+// Spreadsheets save rows whose cells were once filled.
+void CsvTable::DropBlankRowsAtEnd() {
+  const auto blank = [&](std::size_t row) {
+    for (std::size_t column = 0; column < columns_.size(); ++column)
+      if (!Cell(row, column).empty()) return false;
+    return true;
+  };
+  while (rows() > 0 && blank(rows() - 1)) {
+    cells_.resize(cells_.size() - columns_.size());
+    row_begin_.pop_back();
+    row_line_.pop_back();
+  }
 }
 
 std::size_t CsvTable::Column(std::string_view name, std::string_view what) const {

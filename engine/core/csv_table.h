@@ -14,7 +14,9 @@
 
 namespace ed3r {
 
-// Whether lines that begin with # are left out, blank ones too, wherever they stand.
+// kHash is for tables of other programs: lines that begin with # are left out, blank ones too, wherever they stand, and
+// so are rows without a word at the end; a column without a name (row numbers, a delimiter at the end of every line) is
+// called by its place, "column 1".
 enum class CsvComments { kNone, kHash };
 
 inline constexpr std::size_t kMaxCsvColumns = 10000;
@@ -22,7 +24,7 @@ inline constexpr std::size_t kMaxCsvColumns = 10000;
 // Once read, and its decimal commas with it, nothing changes it; share it between threads freely.
 class CsvTable {
  public:
-  // Throws UserError: unreadable or empty file, a repeated or empty column name, a row with another number of
+  // Throws UserError: unreadable or empty file, a repeated column name, an empty one but with kHash, a row with another number of
   // cells, more than kMaxCsvColumns columns or kMaxTextBytes (file.h).
   static CsvTable Read(const std::string& path, CsvComments comments = CsvComments::kNone);
   // The same from text; `path` only names it in messages. `delimiter`: between cells; a semicolon or a tab.
@@ -61,8 +63,9 @@ class CsvTable {
   };
 
   CsvTable() = default;
-  void ReadHeader(std::string_view line, int number);
+  void ReadHeader(std::string_view line, int number, CsvComments comments);
   void ReadRow(std::size_t begin, std::string_view line, int number);
+  void DropBlankRowsAtEnd();
 
   std::string path_;
   std::string text_;

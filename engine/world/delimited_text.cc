@@ -85,14 +85,7 @@ DelimitedText ToDelimitedText(const std::string& path, std::string text) {
   const char delimiter =
       DelimiterOf(std::string_view(text).substr(header.begin, header.end - header.begin), path);
   CheckComments(path, text, header, delimiter);
-  DelimitedText table{std::move(text), delimiter};
-  if (std::string_view(table.text).substr(header.begin).starts_with(std::string("\"\"") + delimiter)) {
-    table.text[header.begin] = '_';
-    table.text[header.begin + 1] = '1';
-  }
-  if (header.begin < table.text.size() && table.text[header.begin] == delimiter)
-    table.text.insert(header.begin, 1, '_');
-  return table;
+  return {std::move(text), delimiter};
 }
 
 }  // namespace ed3r::world

@@ -29,6 +29,21 @@ TEST(CsvTableTest, CommentsAndBlankLinesStandAnywhereWhereTheyAreAllowed) {
   EXPECT_EQ(Refusal("a\n1\n\n2\n"), "t.csv:3:1: blank line inside the table");
 }
 
+// pandas writes its row numbers so; other programs end every line with a delimiter.
+TEST(CsvTableTest, AColumnWithoutANameIsCalledByItsPlaceInTablesOfOtherPrograms) {
+  const CsvTable table = CsvTable::Parse("t.csv", ",a,b,\n0,1,2,\n", CsvComments::kHash);
+  EXPECT_EQ(table.columns(), (std::vector<std::string>{"column 1", "a", "b", "column 4"}));
+  EXPECT_EQ(table.Number(0, 2, 0, 10), 2.0);
+  EXPECT_EQ(Refusal("a,,b\n"), "t.csv:1:3: column 2 has no name");
+}
+
+TEST(CsvTableTest, RowsOfDelimitersAloneAtTheEndAreLeftOut) {
+  const std::string text = "a;b\n1;2\n;\n3;4\n;\n \"\";\n\n";
+  EXPECT_EQ(CsvTable::Parse("t.csv", text, CsvComments::kHash, ';').rows(), 3u) << "not those between";
+  EXPECT_EQ(CsvTable::Parse("t.csv", "a,b\n,\n").rows(), 1u);
+  EXPECT_EQ(CsvTable::Parse("t.csv", "a,b\n,\n", CsvComments::kHash).rows(), 0u);
+}
+
 TEST(CsvTableTest, TextComesBackAsItWasWritten) {
   for (const std::string text : {"plain", "a,b", "say \"x\"", "\"\"", "\"", ",\",\"", ""}) {
     const CsvTable table = CsvTable::Parse("t.csv", "a,b\n" + CsvField(text) + ",end\n");

@@ -94,6 +94,15 @@ TEST(CsvDialectTest, CommentsThatMayBeRowsAreCounted) {
   EXPECT_TRUE(ParseLog("x.csv", "# a,b\nt,p\n1,2\n# no row\n", {}).notes().empty());
 }
 
+TEST(CsvDialectTest, TablesOfPandasAndWithADelimiterAtTheEndOfEveryLine) {
+  for (const char* text :
+       {",t,p\n0,1,2\n1,3,4\n", "t,p,\n1,2,\n3,4,\n,,\n", "\"\";t;p\n\"a\";1;2\n\"b\";3;4\n;;\n"}) {
+    const LogTable log = ParseLog("x.csv", text, {});
+    ASSERT_EQ(log.rows(), 2u) << text;
+    EXPECT_EQ(log.Number(1, log.Column("p", ""), 0, 10), 4.0) << text;
+  }
+}
+
 TEST(CsvDialectTest, NamesWhatItCannotRead) {
   const auto complaint = [](const std::string& text) { return Complaint([&] { Standard(text); }); };
   EXPECT_EQ(complaint("t,p\n0,5,400,25\n"),

@@ -80,6 +80,12 @@ TEST_F(StemMapTest, TablesAsProgramsWriteThem) {
       ",x_m,y_m,dbh_cm,height_m,crown_depth_m,crown_radius_m\n0,3,7,20,15,8,2\n1,63,57,30,21.5,9,2.5\n");
 }
 
+TEST_F(StemMapTest, ADelimiterAtTheEndOfEveryLineAndRowsOfThemAlone) {
+  ExpectTrees(
+      "x_m;y_m;dbh_cm;height_m;crown_depth_m;crown_radius_m;\n3;7;20;15;8;2;\n63;57;30;21,5;9;2,5;\n;;;;;;\n"
+      ";;;;;;\n");
+}
+
 TEST_F(StemMapTest, ComplaintsNameThePlaceInTheFileAsItIs) {
   EXPECT_EQ(
       Message("x_m;y_m;dbh_cm;height_m;crown_depth_m;crown_radius_m\n3;7;20;15;8;2\n63;57;30;tall;9;2,5\n"),
