@@ -8,72 +8,104 @@
 #include <numbers>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "engine/core/check.h"
 
 namespace ed3r::fit {
 namespace {
 
+constexpr std::string_view kTime = "time_s", kPower = "power_w", kVoltage = "voltage_v",
+                           kCurrent = "current_a", kSpeed = "airspeed_mps", kClimb = "climb_mps",
+                           kAltitude = "altitude_m", kPayload = "payload_kg", kMass = "mass_kg";
+
 struct UnitWord {
-  std::string_view meaning, word;  // as a word of the column's name
+  std::string_view meaning;
   double factor;
+  std::string_view words;  // of the column's name: any of them, between blanks
 };
 
 // Words of column names that say another unit than ours.
-constexpr UnitWord kUnitWords[] = {{"time_s", "us", 1e-6},
-                                   {"time_s", "usec", 1e-6},
-                                   {"time_s", "microseconds", 1e-6},
-                                   {"time_s", "ms", 1e-3},
-                                   {"time_s", "msec", 1e-3},
-                                   {"time_s", "millisecond", 1e-3},
-                                   {"time_s", "milliseconds", 1e-3},
-                                   {"time_s", "min", 60},
-                                   {"time_s", "minutes", 60},
-                                   {"power_w", "kw", 1e3},
-                                   {"power_w", "mw", 1e-3},
-                                   {"voltage_v", "mv", 1e-3},
-                                   {"current_a", "ma", 1e-3},
-                                   {"airspeed_mps", "kmh", 1 / 3.6},
-                                   {"airspeed_mps", "kph", 1 / 3.6},
-                                   {"airspeed_mps", "mph", 0.44704},
-                                   {"airspeed_mps", "knots", 0.514444},
-                                   {"airspeed_mps", "kn", 0.514444},
-                                   {"airspeed_mps", "kt", 0.514444},
-                                   {"airspeed_mps", "kts", 0.514444},
-                                   {"airspeed_mps", "fts", 0.3048},
-                                   {"airspeed_mps", "cms", 0.01},
-                                   {"climb_mps", "kmh", 1 / 3.6},
-                                   {"climb_mps", "kph", 1 / 3.6},
-                                   {"climb_mps", "mph", 0.44704},
-                                   {"climb_mps", "fpm", 0.00508},
-                                   {"climb_mps", "ftmin", 0.00508},
-                                   {"climb_mps", "fts", 0.3048},
-                                   {"climb_mps", "cms", 0.01},
-                                   {"altitude_m", "ft", 0.3048},
-                                   {"altitude_m", "feet", 0.3048},
-                                   {"altitude_m", "cm", 0.01},
-                                   {"altitude_m", "mm", 1e-3},
-                                   {"payload_kg", "g", 1e-3},
-                                   {"payload_kg", "gram", 1e-3},
-                                   {"payload_kg", "grams", 1e-3},
-                                   {"payload_kg", "lb", 0.453592},
-                                   {"payload_kg", "lbs", 0.453592},
-                                   {"mass_kg", "g", 1e-3},
-                                   {"mass_kg", "grams", 1e-3},
-                                   {"mass_kg", "lb", 0.453592},
-                                   {"mass_kg", "lbs", 0.453592}};
+constexpr UnitWord kUnitWords[] = {
+    {kTime, 1e-9, " ns nsec nanosecond nanoseconds "},
+    {kTime, 1e-6, " us usec microsecond microseconds "},
+    {kTime, 1e-3, " ms msec millisecond milliseconds "},
+    {kTime, 60, " min mins minutes "},
+    {kPower, 1e3, " kw kilowatt kilowatts "},
+    {kPower, 1e-3, " mw milliwatt milliwatts "},
+    {kPower, 745.7, " hp horsepower "},
+    {kVoltage, 1e-3, " mv millivolt millivolts "},
+    {kCurrent, 1e-3, " ma milliamp milliamps milliampere milliamperes "},
+    {kSpeed, 1 / 3.6, " kmh kmhr kph kmph kilometersperhour kilometresperhour "},
+    {kSpeed, 0.44704, " mph mih milesperhour "},
+    {kSpeed, 0.514444, " kn kt kts knot knots "},
+    {kSpeed, 0.3048, " fps fts ftsec feetpersecond "},
+    {kSpeed, 0.01, " cms cmsec "},
+    {kClimb, 1 / 3.6, " kmh kmhr kph kmph kilometersperhour kilometresperhour "},
+    {kClimb, 0.44704, " mph mih milesperhour "},
+    {kClimb, 0.514444, " kn kt kts knot knots "},
+    {kClimb, 0.00508, " fpm ftmin feetperminute "},
+    {kClimb, 0.3048, " fps fts ftsec feetpersecond "},
+    {kClimb, 1.0 / 60.0, " mmin "},
+    {kClimb, 0.01, " cms cmsec "},
+    {kAltitude, 0.3048, " ft foot feet "},
+    {kAltitude, 1e3, " km "},
+    {kAltitude, 0.01, " cm "},
+    {kAltitude, 1e-3, " mm "},
+    {kPayload, 1e-3, " g gram grams "},
+    {kPayload, 0.453592, " lb lbs pound pounds "},
+    {kPayload, 0.0283495, " oz ounce ounces "},
+    {kMass, 1e-3, " g gram grams "},
+    {kMass, 0.453592, " lb lbs pound pounds "},
+    {kMass, 0.0283495, " oz ounce ounces "}};
 
-// The letters of a name in words: "Speed (km/h)" is speed, kmh.
-std::vector<std::string> WordsOf(std::string_view name) {
+// Whether a capital after a small letter begins a word, as in speedKmh but not in power_kW.
+enum class Capitals { kPlain, kBeginWords };
+
+// The words of a name, in lower case.
+std::vector<std::string> WordsOf(std::string_view name, Capitals capitals) {
   std::vector<std::string> words(1);
+  bool small = false;
   for (const char c : name) {
-    if (c == '/') continue;
-    if (std::isalpha(static_cast<unsigned char>(c)) != 0)
-      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    else if (!words.back().empty())
-      words.emplace_back();
+    const auto letter = static_cast<unsigned char>(c);
+    const bool begins = capitals == Capitals::kBeginWords && small && std::isupper(letter) != 0;
+    if ((begins || std::isalpha(letter) == 0) && !words.back().empty()) words.emplace_back();
+    if (std::isalpha(letter) != 0) words.back() += static_cast<char>(std::tolower(letter));
+    small = std::islower(letter) != 0;
   }
+  if (words.back().empty() && words.size() > 1) words.pop_back();
   return words;
+}
+
+// Adds to the words of a name those that a quotient makes of two or three: km/h, km_h, km h-1 and km per h are kmh, too.
+void AddQuotients(std::vector<std::string>& words) {
+  constexpr std::string_view kLengths = " km cm ft m mi kilometers kilometres miles feet ",
+                             kTimes = " h hr s sec min hour second minute ";
+  const auto among = [](std::string_view list, const std::string& word) {
+    return list.find(fmt::format(" {} ", word)) != std::string_view::npos;
+  };
+  for (std::size_t i = 0, size = words.size(); i + 1 < size; ++i) {
+    if (!among(kLengths, words[i])) continue;
+    const bool per = words[i + 1] == "per" && i + 2 < size;
+    const std::string time = words[i + (per ? 2 : 1)];
+    if (!among(kTimes, time)) continue;
+    words.push_back(words[i] + time);
+    words.push_back(words[i] + "per" + time);
+  }
+}
+
+// The word of a name that says another unit than ours for `meaning`, and the factor from it; or none.
+std::optional<std::pair<std::string, double>> OtherUnit(std::string_view meaning, std::string_view name) {
+  for (const Capitals capitals : {Capitals::kPlain, Capitals::kBeginWords}) {
+    std::vector<std::string> words = WordsOf(name, capitals);
+    if (meaning == kSpeed || meaning == kClimb) AddQuotients(words);
+    for (const UnitWord& unit : kUnitWords)
+      for (const std::string& word : words)
+        if (unit.meaning == meaning && !word.empty() &&
+            unit.words.find(fmt::format(" {} ", word)) != std::string_view::npos)
+          return std::pair{word, unit.factor};
+  }
+  return std::nullopt;
 }
 
 double Quantile(std::vector<double> values, double share) {
@@ -85,7 +117,7 @@ double Quantile(std::vector<double> values, double share) {
 std::optional<std::string> ColumnThatBegins(const flight_logs::LogTable& table, std::string_view a,
                                             std::string_view b) {
   for (const std::string& name : table.columns()) {
-    const std::string first = WordsOf(name).front();
+    const std::string first = WordsOf(name, Capitals::kPlain).front();
     if (first.starts_with(a) || (!b.empty() && first.starts_with(b))) return name;
   }
   return std::nullopt;
@@ -169,12 +201,9 @@ class UnitCheck {
 
   void CheckName(const std::string& meaning, const std::string& column) const {
     if (Believed(meaning)) return;
-    const std::vector<std::string> words = WordsOf(column);
-    const std::string_view kind = meaning == "ground_speed_mps" ? "airspeed_mps" : std::string_view(meaning);
-    for (const UnitWord& word : kUnitWords)
-      if (word.meaning == kind && std::find(words.begin(), words.end(), word.word) != words.end())
-        Refuse(meaning, fmt::format("the name says {}", word.word),
-               Mend(meaning, {{word.word.data(), word.factor}}));
+    if (const auto unit = OtherUnit(meaning == "ground_speed_mps" ? kSpeed : meaning, column))
+      Refuse(meaning, fmt::format("the name says {}", unit->first),
+             Mend(meaning, {{unit->first.c_str(), unit->second}}));
   }
 
   void CheckTime() const {

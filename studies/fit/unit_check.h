@@ -16,7 +16,7 @@ namespace ed3r::fit {
 // The columns of `table` that are read as numbers: those of the format, and places, where CheckUnits looks at them.
 std::vector<std::string> NumberColumns(const flight_logs::LogTable& table, const LogFormat& format);
 
-// By the columns' names (speed_kmh, time(ms)), the median step of the time, the size of speeds, loads, voltages and
+// By the columns' names (speed_kmh, Speed [km h-1], time(ms)), the median step of the time, the size of speeds, loads, voltages and
 // currents, and the speed against the path of latitude and longitude columns where there are any.
 void CheckUnits(const flight_logs::LogTable& table, const LogFormat& format);
 

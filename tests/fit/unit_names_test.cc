@@ -1,0 +1,73 @@
+// Names of columns that say another unit than the fit's.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+
+#include "studies/fit/unit_check.h"
+#include "tests/flight_logs/complaint.h"
+
+namespace ed3r::fit {
+namespace {
+
+// What is said of a column of this name that is read as `meaning`; its numbers can be in any unit.
+std::string Says(const std::string& meaning, const std::string& name) {
+  std::map<std::string, std::string> columns = {{"time_s", "t"},       {"power_w", "p"},
+                                                {"airspeed_mps", "v"}, {"climb_mps", "w"},
+                                                {"altitude_m", "a"},   {"payload_kg", "load"}};
+  columns[meaning] = name;
+  std::string header, row, format = "columns: {";
+  for (const auto& [key, column] : columns) {
+    header += fmt::format("{}\"{}\"", header.empty() ? "" : ",", column);
+    row += row.empty() ? "1" : ",1";
+    format += fmt::format("{}: \"{}\", ", key, column);
+  }
+  format += "}\nrobot: {mass_kg: 2, propellers: 4, propeller_radius_m: 0.12}\n";
+  return flight_logs::Complaint([&] {
+    CheckUnits(flight_logs::LogTable(CsvTable::Parse("log.csv", header + "\n" + row + "\n")),
+               ParseLogFormat("format.yaml", format));
+  });
+}
+
+TEST(UnitNamesTest, OtherUnitsAreHeardHoweverTheyAreSpelt) {
+  const std::map<std::string, std::map<std::string, std::string>> factors = {
+      {"airspeed_mps",
+       {{"speed_kmh", "0.277778"},
+        {"speed_km_h", "0.277778"},
+        {"Speed [km h-1]", "0.277778"},
+        {"Speed (km/h)", "0.277778"},
+        {"speed/km/h", "0.277778"},
+        {"speedKmh", "0.277778"},
+        {"Kilometres per hour", "0.277778"},
+        {"speed_ft_s", "0.3048"},
+        {"speed ft s-1", "0.3048"},
+        {"speed_fps", "0.3048"},
+        {"Speed, mph", "0.44704"},
+        {"v_kn", "0.514444"},
+        {"speed cm s^-1", "0.01"}}},
+      {"climb_mps", {{"vs_ft_min", "0.00508"}, {"vs (ft/min)", "0.00508"}, {"vs m min-1", "0.0166667"}}},
+      {"power_w", {{"power_kW", "1000"}, {"powerKw", "1000"}, {"Power [mW]", "0.001"}}},
+      {"altitude_m", {{"alt_ft", "0.3048"}, {"AltitudeFt", "0.3048"}, {"alt (cm)", "0.01"}}},
+      {"payload_kg", {{"load (g)", "0.001"}, {"loadLbs", "0.453592"}}}};
+  for (const auto& [meaning, names] : factors)
+    for (const auto& [name, factor] : names) {
+      const std::string message = Says(meaning, name);
+      EXPECT_TRUE(message.starts_with(fmt::format("log.csv:1:1: {} ('{}'): the name says ", meaning, name)))
+          << message;
+      EXPECT_NE(message.find(fmt::format("put 'units: {{{}: {}}}' into", meaning, factor)), std::string::npos)
+          << message;
+    }
+}
+
+TEST(UnitNamesTest, NamesThatMerelyHaveSuchLettersAreTaken) {
+  for (const char* name :
+       {"speed_m_s", "Speed [m s-1]", "airspeedMps", "known_speed", "speed_over_km", "hkmhs"})
+    EXPECT_EQ(Says("airspeed_mps", name), "") << name;
+  for (const char* name : {"time_m_s", "Time (s)", "timestamp"}) EXPECT_EQ(Says("time_s", name), "") << name;
+  for (const char* name : {"power_w", "PowerW", "maximum"}) EXPECT_EQ(Says("power_w", name), "") << name;
+  for (const char* name : {"shift", "aftAltitude", "cmd"}) EXPECT_EQ(Says("altitude_m", name), "") << name;
+}
+
+}  // namespace
+}  // namespace ed3r::fit
