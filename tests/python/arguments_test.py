@@ -291,6 +291,8 @@ class ArgumentsTest(unittest.TestCase):
         tame.reset()
         tame.move(np.zeros((2, 5)))
         self.refused(r"executions\[0\]: 1.5 is not allowed; allowed: 0 offload", tame.detect, [1.5, 0])
+        self.refused(rf"executions\[0\]: {2**64 - 1} is not allowed; allowed: 0 offload", tame.detect,
+                     np.array([2**64 - 1, 0], np.uint64))
         self.refused(r"executions\[1\]: nan is not allowed", tame.detect, [1.0, np.nan])
         self.refused(r"executions: shape \(3,\) is not allowed; allowed: \(2,\)", tame.detect, [0, 0, 0])
         self.refused("executions: .*allowed: numbers of shape", tame.detect, ["full", "full"])

@@ -116,12 +116,13 @@ def marks(name, value, rows):
 
 
 def executions(name, value, rows):
-    """Codes, one a row, as whole numbers; the engine looks whether they are executions."""
+    """Codes, one a row, as whole numbers that the engine can hold; it looks whether they are executions."""
     codes = numbers(name, value, (rows,))
-    if codes.dtype.kind == "f":
-        wrong = np.flatnonzero(~(np.isfinite(codes) & (codes == np.floor(codes))))
+    if codes.dtype.kind in "uf":
+        fits = np.isfinite(codes) & (codes == np.floor(codes)) & (np.abs(codes) < 2.0**63)
+        wrong = np.flatnonzero(~fits)
         if wrong.size:
-            refuse(f"{name}[{wrong[0]}]", float(codes[wrong[0]]), EXECUTIONS)
+            refuse(f"{name}[{wrong[0]}]", codes[wrong[0]].item(), EXECUTIONS)
     return codes
 
 
