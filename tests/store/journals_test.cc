@@ -1,6 +1,9 @@
 // What lies beside a results file under the name of its journal is its own, or it is not touched.
 #include "engine/store/journals.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <set>
 
@@ -104,6 +107,31 @@ TEST(JournalsTest, ARollbackJournalIsOfItsFile) {
   }
   for (const char* other : {"before", "other"})
     ExpectBound(temp / "killed", temp / other, "-journal", digest);
+}
+
+// Locks end when any descriptor of a file is closed; without them the last client that goes takes the log away.
+TEST(JournalsTest, ALookAtAFileLeavesItsWritersLocks) {
+  const TempDir temp;
+  const auto store = ResultStore::Open(temp / "run", TestRecipe(), TestLayout());
+  store->Put(kFew[0], TestRecord(kFew[0]), 0.25);
+  store->Commit();
+  EXPECT_EQ(ResultReader(temp / "run").CountMissions(), 1);
+  LookAtFile(temp / "run");
+  RecallFinished(temp / "run", "me");
+  const pid_t client = fork();
+  ASSERT_GE(client, 0);
+  if (client == 0) {
+    Connection(ResultsIn(temp / "run"), Connection::Access::kReadWrite).Int("SELECT count(*) FROM missions");
+    _exit(0);
+  }
+  int status = -1;
+  ASSERT_EQ(waitpid(client, &status, 0), client);
+  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(fs::exists(ResultsIn(temp / "run") + "-wal"));
+  store->Put(kFew[1], TestRecord(kFew[1]), 0.25);
+  store->Commit();
+  CopyAsKilled(temp / "run", temp / "killed");
+  EXPECT_EQ(ResultReader(temp / "killed").CountMissions(), 2);
 }
 
 TEST(JournalsTest, EachSessionHasItsMark) {
