@@ -43,6 +43,7 @@ bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, bool 
     // A bad disk leaves the times as they are.
     const bool compared = reader.IsQuicklyCompared();
     if (compared && !reader.FindDamage().empty()) return false;
+    reader.Networks();  // compared, too
     if (!quiet)
       fmt::print("{}\n{}: {} stored ({} before)\n{}", finished->table, dir,
                  Counted(finished->missions, "mission"), finished->missions, finished->networks);

@@ -163,4 +163,17 @@ void CheckJournals(const std::string& file, const std::function<std::optional<Fi
         file, strange));
 }
 
+void CheckNoJournals(const std::string& file, const std::string& owner) {
+  for (const char* suffix : {"-wal", "-journal"}) {
+    const bool holds = std::string(suffix) == "-wal" ? StatesOfLog(file + suffix).has_value()
+                                                     : FirstPageOfJournal(file + suffix).has_value();
+    if (holds)
+      throw UserError(
+          fmt::format("{0}{1}: holds commits of {2}: put the two beside each other under these names, or "
+                      "take {0}{1} away "
+                      "where its commits are not wanted",
+                      file, suffix, owner));
+  }
+}
+
 }  // namespace ed3r::store

@@ -27,4 +27,8 @@ bool IsSameMark(std::int64_t before, std::int64_t after);
 // another one would give back the locks that this process has on it.
 void CheckJournals(const std::string& file, const std::function<std::optional<FileState>()>& state);
 
+// UserError where FILE-wal or FILE-journal holds commits though SQLite would not look there, or would take them away: they are of
+// `owner`, which lies elsewhere.
+void CheckNoJournals(const std::string& file, const std::string& owner);
+
 }  // namespace ed3r::store

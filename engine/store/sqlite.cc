@@ -105,11 +105,17 @@ void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_fi
 Connection::Connection(const std::string& file, Access access) : file_(file) {
   CheckFiles(file);
   std::error_code error;
-  // SQLite takes the journals of nothing away.
-  const bool there = std::filesystem::exists(file, error);
+  // What a link leads to: SQLite's journals lie beside that.
+  const std::filesystem::path real = std::filesystem::canonical(file, error);
+  const bool there = !error;
+  if (there && std::filesystem::is_symlink(file, error)) {
+    CheckFiles(real.string());
+    CheckNoJournals(file, "the file that this name leads to");
+  }
+  if (!there) CheckNoJournals(file, "its results file, which is not there");
   sqlite3* database = nullptr;
   // An absolute path, because Debian's SQLite takes a name that begins with "file:" for a URI.
-  path_ = std::filesystem::absolute(file).string();
+  path_ = there ? real.string() : std::filesystem::absolute(file).string();
   const int status =
       sqlite3_open_v2(path_.c_str(), &database, OpenFlags(access) | SQLITE_OPEN_NOMUTEX, nullptr);
   database_.reset(database);
@@ -117,7 +123,7 @@ Connection::Connection(const std::string& file, Access access) : file_(file) {
   if (status != SQLITE_OK) Fail();
   SetBusyTimeout(kBusyTimeout_ms);
   if (there)
-    CheckJournals(file, [this] { return StateOfFile(); });  // before the first look, which takes them up
+    CheckJournals(path_, [this] { return StateOfFile(); });  // before the first look, which takes them up
 }
 
 std::optional<FileState> Connection::StateOfFile() const {

@@ -134,6 +134,37 @@ TEST(JournalsTest, ALookAtAFileLeavesItsWritersLocks) {
   EXPECT_EQ(ResultReader(temp / "killed").CountMissions(), 2);
 }
 
+TEST(JournalsTest, ALogIsLookedForBesideWhatALinkLeadsTo) {
+  const TempDir temp;
+  WriteStore(temp / "backup", kFew);
+  const auto store = ResultStore::Open(temp / "run", TestRecipe(), TestLayout());
+  store->Put(kMore[0], TestRecord(kMore[0]), 0.25);
+  store->Commit();
+  CopyAsKilled(temp / "run", temp / "mixed");
+  fs::copy_file(ResultsIn(temp / "backup"), ResultsIn(temp / "mixed"), fs::copy_options::overwrite_existing);
+  fs::create_directories(temp / "link");
+  fs::create_symlink(ResultsIn(temp / "mixed"), ResultsIn(temp / "link"));
+  EXPECT_TRUE(
+      Contains(UserErrorOf([&] { ResultReader reader(temp / "link"); }), "-wal is of another results"));
+  EXPECT_TRUE(Contains(UserErrorOf([&] { WriteStore(temp / "link", kMore); }), "-wal is of another results"));
+
+  // The file alone was moved, and its log stayed.
+  CopyAsKilled(temp / "run", temp / "moved");
+  fs::create_directories(temp / "elsewhere");
+  fs::rename(ResultsIn(temp / "moved"), ResultsIn(temp / "elsewhere"));
+  const auto orphan = [&](const auto& action) {
+    EXPECT_TRUE(Contains(UserErrorOf(action), ResultsIn(temp / "moved") + "-wal: holds commits of"));
+    EXPECT_TRUE(fs::exists(ResultsIn(temp / "moved") + "-wal"));
+  };
+  orphan([&] { WriteStore(temp / "moved", kFew); });
+  fs::create_symlink(ResultsIn(temp / "elsewhere"), ResultsIn(temp / "moved"));
+  orphan([&] { ResultReader reader(temp / "moved"); });
+  orphan([&] { WriteStore(temp / "moved", kFew); });
+  fs::remove(ResultsIn(temp / "moved"));
+  fs::rename(ResultsIn(temp / "elsewhere"), ResultsIn(temp / "moved"));
+  EXPECT_EQ(ResultReader(temp / "moved").CountMissions(), 1);
+}
+
 TEST(JournalsTest, EachSessionHasItsMark) {
   std::set<std::int64_t> marks;
   for (int i = 0; i < 100; ++i) marks.insert(DrawMark());
