@@ -113,12 +113,13 @@ std::optional<JournalledPage> FirstPageOfJournal(const std::string& name) {
 bool SameMark(std::uint32_t before, std::uint32_t after) { return after - before < kMostSchemaChanges; }
 
 // A log is written back from time to time: the file is at a state from that before its first commit to that after its last.
-// One that is of an earlier round ends before the file does. A session that takes up a killed one's log marks the file in it.
+// One that is of an earlier round ends before the file does; only a change of the schema (VACUUM is one) may make a file
+// smaller. A session that takes up a killed one's log marks the file in it.
 bool IsOf(const FileState& file, const std::pair<FileState, FileState>& log) {
   const auto& [first, last] = log;
   const bool same_mark =
       SameMark(file.mark, first.mark) || SameMark(file.mark, last.mark) || SameMark(first.mark, file.mark);
-  return same_mark && file.pages <= last.pages &&
+  return same_mark && (file.mark != last.mark || file.pages <= last.pages) &&
          file.changes - (first.changes - 1) <= last.changes - (first.changes - 1);
 }
 

@@ -15,7 +15,7 @@ std::int64_t DrawMark();
 // What the first page of a file tells of its state.
 struct FileState {
   std::uint32_t changes = 0, mark = 0;
-  std::uint32_t pages = 0;  // a store never shrinks
+  std::uint32_t pages = 0;
   bool operator==(const FileState&) const = default;
 };
 // Whether `after` is `before`, with changes of the schema of one session.

@@ -1,6 +1,7 @@
 #include "engine/store/store_file.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -145,7 +146,7 @@ void StoreFile::CheckOwned() const {
         fmt::format("{}: another ed3r has taken this directory over; what is stored is kept", dir_));
 }
 
-void StoreFile::CheckInPlace() const {
+void StoreFile::CheckInPlace() {
   const auto state = marks_.empty() ? std::nullopt : database_->StateOfFile();
   const bool written_over = state && std::none_of(marks_.begin(), marks_.end(), [&](std::int64_t own) {
                               return IsSameMark(own, state->mark);
@@ -155,6 +156,16 @@ void StoreFile::CheckInPlace() const {
     throw StoreError(fmt::format(
         "{}: was taken away, or another file put in its place, while it was written to: what this "
         "run has stored is not in it; the same command continues with what is there",
+        FileIn(dir_)));
+  if (marks_.empty()) return;  // no log
+  struct stat log = {};
+  const bool there = stat((ResultsFileOf(dir_) + "-wal").c_str(), &log) == 0;
+  if (log_inode_ == 0 && there) log_inode_ = log.st_ino;
+  // What it holds is written into the file when this connection is closed.
+  if (log_inode_ != 0 && (!there || log.st_ino != log_inode_))
+    throw StoreError(fmt::format(
+        "{}-wal: was taken away while it was written to, where readers look and a kill leaves what "
+        "is stored; the same command continues",
         FileIn(dir_)));
 }
 

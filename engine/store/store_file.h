@@ -51,8 +51,8 @@ class StoreFile {
 
   // StoreError once another writer has taken the directory over, which it does only when this one seemed dead.
   void CheckOwned() const;
-  // StoreError once another file lies in this one's place, or was copied over it.
-  void CheckInPlace() const;
+  // StoreError once another file lies in this one's place, or was copied over it, or its log was taken away.
+  void CheckInPlace();
 
   // Takes away what this object created: the file, and the directories that are empty then. For what is refused after all.
   void Discard();
@@ -70,6 +70,7 @@ class StoreFile {
   std::string grown_;
   std::vector<DamagedMission> repaired_;
   bool rollback_journal_ = false;
+  std::uint64_t log_inode_ = 0;      // of the write-ahead log; 0 before it is there
   std::vector<std::int64_t> marks_;  // that the file may have while this object writes (journals.h)
   // One of the two is held; both outlive the connection.
   std::unique_ptr<DirectoryLock> lock_;

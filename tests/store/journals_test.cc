@@ -60,6 +60,19 @@ TEST(JournalsTest, AWriteAheadLogIsOfItsFile) {
     ExpectBound(temp / "run", temp / other, "-wal", DigestOfDir(temp / "reference"));
 }
 
+TEST(JournalsTest, AFileThatBecameSmallerKeepsItsLog) {
+  const TempDir temp;
+  WriteStore(temp / "run", AllMissions(TestLayout()));
+  Connection writer(ResultsIn(temp / "run"), Connection::Access::kReadWrite);
+  writer.Execute("PRAGMA journal_mode = WAL; DELETE FROM timesteps; PRAGMA wal_checkpoint(TRUNCATE)");
+  const auto before = writer.StateOfFile();
+  writer.Execute("VACUUM");
+  ASSERT_LT(writer.Int("PRAGMA page_count"), std::int64_t{before->pages});
+  CopyAsKilled(temp / "run", temp / "killed");
+  ASSERT_TRUE(fs::exists(ResultsIn(temp / "killed") + "-wal"));
+  EXPECT_EQ(ResultReader(temp / "killed").CountMissions(), std::ssize(AllMissions(TestLayout())));
+}
+
 // Copies of a killed run go on apart, and a log of an earlier round is put back.
 TEST(JournalsTest, AWriteAheadLogIsOfItsRound) {
   const TempDir temp;

@@ -256,6 +256,19 @@ TEST(StoreTest, AFileThatAnotherTookThePlaceOfIsNotWritten) {
   EXPECT_THROW(store->Commit(), StoreError);
 }
 
+TEST(StoreTest, ALogThatWasTakenAwayIsNotWrittenOn) {
+  const TempDir temp;
+  {
+    const auto store = OpenTest(temp / "run");
+    store->Put({0, 0, 1}, TestRecord({0, 0, 1}), 0);
+    store->Commit();
+    std::filesystem::remove(ResultsIn(temp / "run") + "-wal");
+    EXPECT_THROW(store->Put({0, 0, 2}, TestRecord({0, 0, 2}), 0), StoreError);
+  }
+  EXPECT_EQ(ResultReader(temp / "run").CountMissions(), 1) << "it comes home at the end";
+  WriteStore(temp / "run", {{0, 0, 2}});
+}
+
 // cp keeps the inode.
 TEST(StoreTest, AFileThatAnotherWasCopiedOverIsNotWritten) {
   const TempDir temp;
