@@ -141,10 +141,15 @@ OnnxWriter& OnnxWriter::Producer(const std::string& name) {
   return *this;
 }
 
+OnnxWriter& OnnxWriter::Opset(std::uint64_t version) {
+  opset_ = version;
+  return *this;
+}
+
 std::string OnnxWriter::Bytes() const {
   constexpr std::uint32_t kIrVersion = 1, kOpset = 8, kGraphName = 2, kVersion = 2;
   ProtobufWriter opset, model;
-  opset.Number(kVersion, 11);
+  opset.Number(kVersion, opset_);
   model.Number(kIrVersion, 7).Bytes(perception::onnx::kProducer, producer_);
   model.Bytes(perception::onnx::kGraph, steps_ + Message(kGraphName, "g") + weights_ + inputs_ + outputs_);
   return model.Bytes(kOpset, opset.bytes()).bytes();

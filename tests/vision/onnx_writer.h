@@ -33,11 +33,13 @@ class OnnxWriter {
                    const std::vector<std::string>& outputs, const std::vector<OnnxAttribute>& attributes = {},
                    const std::string& domain = "");
   OnnxWriter& Producer(const std::string& name);
+  OnnxWriter& Opset(std::uint64_t version);
 
   std::string Bytes() const;
 
  private:
   std::string steps_, weights_, inputs_, outputs_, producer_ = "test";
+  std::uint64_t opset_ = 11;
 };
 
 // Half precision, exact for the values of the tests.

@@ -223,6 +223,14 @@ TEST_F(Operators, SoftmaxOverTheChannelsOfAVector) {
   EXPECT_NEAR(confidence, std::exp(red_) / (std::exp(red_) + std::exp(green_) + std::exp(blue_)), 1e-6);
 }
 
+// The standard's axis is the last since opset 13; OpenCV takes side 1. Green is 100 + 2 y alike along x: an eighth each.
+TEST_F(Operators, SoftmaxWithoutAnAxisGoesByTheOpset) {
+  model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 192});
+  model_.Opset(13).Step("Softmax", {"frame"}, {"s"}).Step("Flatten", {"s"}, {"y"});
+  EXPECT_NEAR(Value(64), 0.125, 2e-6);
+  EXPECT_NEAR(Value(127), 0.125, 2e-6);
+}
+
 TEST_F(Operators, ReductionsKeepOrDropTheirSides) {
   for (const std::int64_t keep : {0, 1}) {
     model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 3});
@@ -237,6 +245,59 @@ TEST_F(Operators, PartsAreJoinedAndScaled) {
   model_.Step("Mul", {"flat", "half"}, {"h"})
       .Step("Concat", {"h", "flat"}, {"y"}, {{"axis", std::int64_t{1}}});
   Expect({red_ / 2, green_ / 2, blue_ / 2, red_, green_, blue_});
+}
+
+TEST_F(Operators, SplitTakesItsSizesFromAnInput) {
+  Means().Integers("sizes", {2, 1});
+  model_.Step("Split", {"flat", "sizes"}, {"a", "b"}, {{"axis", std::int64_t{1}}});
+  model_.Step("Concat", {"b", "a"}, {"y"}, {{"axis", std::int64_t{1}}});
+  Expect({blue_, red_, green_});
+  model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 3});
+  Means().Step("Shape", {"flat"}, {"sizes"}).Step("Split", {"flat", "sizes"}, {"y", "b"});
+  ExpectRefusal("operator Split (node 'the Split') has the sizes 'sizes', which are no constants");
+}
+
+TEST_F(Operators, ReductionsTakeTheirAxesFromAnInput) {
+  model_.Integers("axes", {2, 3});
+  model_.Step("ReduceMean", {"frame", "axes"}, {"y"}, {{"keepdims", std::int64_t{0}}});
+  Expect({red_, green_, blue_});
+  model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 3});
+  model_.Step("Shape", {"frame"}, {"axes"}).Step("ReduceMax", {"frame", "axes"}, {"y"});
+  ExpectRefusal("operator ReduceMax (node 'the ReduceMax') has the axes 'axes', which are no constants");
+}
+
+TEST_F(Operators, AConstantVectorByWhatIsComputedIsRefused) {
+  Means().Weights("c", {3}, {1, 2, 4}).Step("Div", {"c", "flat"}, {"y"});
+  ExpectRefusal("operator Div (node 'the Div') divides a constant of several numbers");
+  model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 3});
+  Means().Weights("c", {}, {0.25F}).Step("Exp", {"flat"}, {"e"}).Step("Div", {"c", "e"}, {"y"});
+  Expect({0.25 * std::exp(-red_), 0.25 * std::exp(-green_), 0.25 * std::exp(-blue_)});
+}
+
+// OpenCV passes over them, or pads as if they were 1.
+TEST_F(Operators, DilationsThatOpenCvPassesOverAreRefused) {
+  const auto through = [&](const std::string& op, const std::vector<test::OnnxAttribute>& attributes,
+                           const std::string& refusal) {
+    model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 1});
+    model_.Weights("k", {3, 1, 1, 1}, {1, 1, 1}).Weights("k1", {1, 3, 1, 1}, {1, 1, 1});
+    model_.Step(op, {"frame", op == "Conv" ? "k1" : "k"}, {"c"}, attributes);
+    model_.Step("GlobalAveragePool", {"c"}, {"means"}).Step("Flatten", {"means"}, {"y"});
+    ExpectRefusal("operator " + op + " (node 'the " + op + "') has dilations" + refusal);
+  };
+  const test::OnnxAttribute dilations = {"dilations", Ints{2, 2}},
+                            same = {"auto_pad", std::string("SAME_UPPER")};
+  through("Conv", {dilations, same}, " beside auto_pad");
+  through("ConvTranspose", {dilations}, ", auto_pad or output_shape");
+  through("ConvTranspose", {same}, ", auto_pad or output_shape");
+  through("ConvTranspose", {{"output_shape", Ints{8, 8}}}, ", auto_pad or output_shape");
+}
+
+TEST_F(Operators, ResizeWithAntialiasIsRefused) {
+  model_.Weights("s", {4}, {1, 1, 0.5F, 0.5F});
+  model_.Step("Resize", {"frame", "", "s"}, {"r"},
+              {{"mode", std::string("linear")}, {"antialias", std::int64_t{1}}});
+  model_.Step("GlobalAveragePool", {"r"}, {"means"}).Step("Flatten", {"means"}, {"y"});
+  ExpectRefusal("operator Resize (node 'the Resize') has antialias = 1");
 }
 
 TEST_F(Operators, DifferencesAndQuotientsKeepTheirOrder) {

@@ -6,7 +6,13 @@
 
 namespace ed3r::perception::onnx {
 
-enum ModelField : std::uint32_t { kProducer = 2, kGraph = 7 };
+enum ModelField : std::uint32_t {
+  kProducer = 2,
+  kGraph = 7,
+  kOpset = 8,
+  kOpsetDomain = 1,
+  kOpsetVersion = 2
+};
 enum GraphField : std::uint32_t {
   kNode = 1,
   kInitializer = 5,
@@ -61,7 +67,7 @@ enum ValueField : std::uint32_t {
 };
 
 inline constexpr std::uint64_t kTypeOfFloat = 1, kTypeOfInt = 2, kTypeOfInts = 7;  // of attributes
-inline constexpr std::uint64_t kFloat = 1, kFloat16 = 10;
+inline constexpr std::uint64_t kFloat = 1, kInt64 = 7, kFloat16 = 10;
 inline constexpr std::uint64_t kLiesOutside = 1;  // of kLocation
 inline constexpr std::int64_t kOpenSide = -1;     // what some exporters write for a side that is left open
 

@@ -56,6 +56,13 @@ class Mender {
     if (step_.op == "Gemm") return Gemm();
     if (step_.op == "AveragePool") CheckPadding();
     if (step_.op == "Clip" && step_.inputs.size() > 1) return {Clip()};
+    if (step_.op == "Div") CheckQuotient();
+    if (step_.op == "Resize" && step_.Number("antialias", 0) != 0)
+      Refuse("has antialias = 1, which OpenCV passes over; allowed: 0");
+    if (step_.op.ends_with("Softmax") && around_.opset >= 13 && !step_.Has("axis"))
+      return {std::string(node_) + LastAxis()};
+    if (step_.op == "Split" && step_.inputs.size() > 1) return {WithList("split", "sizes")};
+    if (step_.op.starts_with("Reduce")) return {Reduce()};
     if (step_.op == "LeakyRelu" && !step_.Has("alpha"))
       return {std::string(node_) + NumberAttribute("alpha", 0.01F)};
     return {std::string(node_)};
@@ -99,11 +106,36 @@ class Mender {
       Refuse(
           "has auto_pad = SAME_LOWER, which OpenCV takes for SAME_UPPER; allowed: SAME_UPPER, or pads in "
           "numbers");
+    const bool same = pad != step_.attributes.end() && pad->second.text.starts_with("SAME_");
     const auto dilations = step_.attributes.find("dilations");
-    if (step_.op.ends_with("Pool") && dilations != step_.attributes.end() &&
-        std::any_of(dilations->second.numbers.begin(), dilations->second.numbers.end(),
-                    [](std::int64_t dilation) { return dilation != 1; }))
+    const bool dilated = dilations != step_.attributes.end() &&
+                         std::any_of(dilations->second.numbers.begin(), dilations->second.numbers.end(),
+                                     [](std::int64_t dilation) { return dilation != 1; });
+    if (step_.op == "Conv" && dilated && same)
+      Refuse("has dilations beside auto_pad, which OpenCV pads as without them; allowed: pads in numbers");
+    if (step_.op == "ConvTranspose" && (dilated || same || step_.Has("output_shape")))
+      Refuse(
+          "has dilations, auto_pad or output_shape, which OpenCV passes over or reads otherwise there; "
+          "allowed: dilations of 1, and pads and output_padding in numbers");
+    if (step_.op.ends_with("Pool") && dilated)
       Refuse("has dilations, which OpenCV passes over in pools; allowed: 1");
+  }
+
+  // OpenCV takes the larger operand for the first.
+  void CheckQuotient() const {
+    if (step_.inputs.size() < 2 || around_.elements.contains(step_.inputs[1])) return;
+    const auto first = around_.elements.find(step_.inputs[0]);
+    if (first != around_.elements.end() && first->second > 1)
+      Refuse(
+          "divides a constant of several numbers by what is computed, which OpenCV turns round; allowed: one "
+          "number, or a Mul by the quotient of 1");
+  }
+
+  static std::string LastAxis() {
+    ProtobufWriter attribute, field;
+    attribute.Bytes(onnx::kAttributeName, "axis").Number(onnx::kAttributeInt, ~std::uint64_t{0});
+    attribute.Number(onnx::kAttributeType, onnx::kTypeOfInt);
+    return field.Bytes(onnx::kNodeAttribute, attribute.bytes()).bytes();
   }
 
   std::vector<std::string> Gemm() const {
@@ -148,13 +180,40 @@ class Mender {
                       counts ? 1 : 0, around_.producer));
   }
 
-  std::string Clip() const {
-    ProtobufWriter clip;
+  std::string WithFirstInput() const {
+    ProtobufWriter node;
     int input = 0;
     ForEachField(node_, name_, [&](const ProtobufField& field) {
-      if (field.number != onnx::kNodeInput || input++ == 0) clip.Copy(field);
+      if (field.number != onnx::kNodeInput || input++ == 0) node.Copy(field);
     });
-    std::string text = clip.bytes();
+    return node.bytes();
+  }
+
+  // The second input as an attribute, as of old.
+  std::string WithList(const std::string& attribute, const std::string& what) const {
+    if (step_.inputs[1].empty()) return WithFirstInput();
+    const auto list = around_.lists.find(step_.inputs[1]);
+    if (list == around_.lists.end())
+      Refuse(
+          fmt::format("has the {} '{}', which are no constants; allowed: constants", what, step_.inputs[1]));
+    if (list->second.empty()) return WithFirstInput();
+    ProtobufWriter numbers, field;
+    numbers.Bytes(onnx::kAttributeName, attribute);
+    for (const std::int64_t number : list->second)
+      numbers.Number(onnx::kAttributeInts, static_cast<std::uint64_t>(number));
+    numbers.Number(onnx::kAttributeType, onnx::kTypeOfInts);
+    return WithFirstInput() + field.Bytes(onnx::kNodeAttribute, numbers.bytes()).bytes();
+  }
+
+  std::string Reduce() const {
+    if (step_.Number("noop_with_empty_axes", 0) != 0 && !step_.Has("axes") &&
+        (step_.inputs.size() < 2 || step_.inputs[1].empty()))
+      Refuse("has noop_with_empty_axes = 1 and no axes; allowed: the axes told");
+    return step_.inputs.size() > 1 ? WithList("axes", "axes") : std::string(node_);
+  }
+
+  std::string Clip() const {
+    std::string text = WithFirstInput();
     const char* const names[] = {"min", "max"};
     for (std::size_t i = 1; i < std::min<std::size_t>(step_.inputs.size(), 3); ++i) {
       if (step_.inputs[i].empty()) continue;
@@ -183,14 +242,44 @@ class Mender {
 
 }  // namespace
 
-void AddBound(std::string_view tensor, const std::string& value, const std::string& name,
-              OnnxSurroundings& around) {
+namespace {
+
+// Of int64: one by one, packed, or raw.
+std::vector<std::int64_t> WholeNumbers(std::string_view tensor, const std::string& name) {
+  std::vector<std::int64_t> numbers;
+  ForEachField(tensor, name, [&](const ProtobufField& field) {
+    if (field.number == onnx::kInt64s && !field.IsBytes())
+      numbers.push_back(static_cast<std::int64_t>(field.value));
+    if (field.number == onnx::kInt64s && field.IsBytes())
+      for (std::string_view packed = field.bytes; !packed.empty();)
+        numbers.push_back(static_cast<std::int64_t>(TakeVarint(packed, name)));
+    if (field.number != onnx::kRaw || !field.IsBytes()) return;
+    for (std::size_t i = 0; i + sizeof(std::int64_t) <= field.bytes.size(); i += sizeof(std::int64_t)) {
+      std::int64_t number = 0;
+      std::memcpy(&number, field.bytes.data() + i, sizeof number);
+      numbers.push_back(number);
+    }
+  });
+  return numbers;
+}
+
+}  // namespace
+
+void AddConstant(std::string_view tensor, const std::string& value, const std::string& name,
+                 OnnxSurroundings& around) {
   std::uint64_t type = 0;
   std::string_view bytes;
+  std::int64_t elements = 1;
   ForEachField(tensor, name, [&](const ProtobufField& field) {
     if (field.number == onnx::kType) type = field.value;
+    if (field.number == onnx::kDims && !field.IsBytes()) elements *= static_cast<std::int64_t>(field.value);
+    if (field.number == onnx::kDims && field.IsBytes())
+      for (std::string_view packed = field.bytes; !packed.empty();)
+        elements *= static_cast<std::int64_t>(TakeVarint(packed, name));
     if (field.number == onnx::kRaw || field.number == onnx::kFloats) bytes = field.bytes;
   });
+  if (type == onnx::kInt64) around.lists[value] = WholeNumbers(tensor, name);
+  around.elements[value] = elements;
   float bound = 0.0F;
   if (type != onnx::kFloat || bytes.size() != sizeof bound) return;
   std::memcpy(&bound, bytes.data(), sizeof bound);

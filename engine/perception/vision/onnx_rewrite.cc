@@ -50,6 +50,7 @@ class Rewriter {
   std::string Model(std::string_view bytes) {
     ForEachField(bytes, name_, [&](const ProtobufField& field) {
       if (field.number == onnx::kProducer && field.IsBytes()) around_.producer = field.bytes;
+      if (field.number == onnx::kOpset && field.IsBytes()) ReadOpset(field.bytes);
       if (field.number == onnx::kGraph && field.IsBytes()) FindBounds(field.bytes);
     });
     ProtobufWriter out;
@@ -86,11 +87,22 @@ class Rewriter {
           fmt::format("its output '{}' does not depend on its input '{}'", reading_.output, reading_.input));
   }
 
+  // Of the standard's own operators.
+  void ReadOpset(std::string_view bytes) {
+    std::string_view domain;
+    std::int64_t version = 1;
+    ForEachField(bytes, name_, [&](const ProtobufField& field) {
+      if (field.number == onnx::kOpsetDomain && field.IsBytes()) domain = field.bytes;
+      if (field.number == onnx::kOpsetVersion) version = static_cast<std::int64_t>(field.value);
+    });
+    if (domain.empty() || domain == "ai.onnx") around_.opset = version;
+  }
+
   // Constants stand among the weights or come from a step of their own.
   void FindBounds(std::string_view graph) {
     ForEachField(graph, name_, [&](const ProtobufField& field) {
       if (field.number == onnx::kInitializer && field.IsBytes())
-        AddBound(Tensor(field.bytes), TensorName(field.bytes), name_, around_);
+        AddConstant(Tensor(field.bytes), TensorName(field.bytes), name_, around_);
       if (field.number != onnx::kNode || !field.IsBytes()) return;
       std::string output;
       std::string_view attribute, op;
@@ -102,7 +114,7 @@ class Rewriter {
       if (op != "Constant") return;
       ForEachField(attribute, name_, [&](const ProtobufField& part) {
         if (part.number == onnx::kAttributeTensor && part.IsBytes())
-          AddBound(Tensor(part.bytes), output, name_, around_);
+          AddConstant(Tensor(part.bytes), output, name_, around_);
       });
     });
   }
