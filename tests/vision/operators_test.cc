@@ -300,6 +300,13 @@ TEST_F(Operators, ResizeWithAntialiasIsRefused) {
   ExpectRefusal("operator Resize (node 'the Resize') has antialias = 1");
 }
 
+TEST_F(Operators, AnOutputOfAnotherSizeThanDeclaredIsRefused) {
+  model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 4});
+  Means().Step("Relu", {"flat"}, {"y"});
+  ExpectRefusal(
+      "its output 'y' is declared as [1, 4] and has 3 values as OpenCV reads the model; allowed: a model");
+}
+
 TEST_F(Operators, DifferencesAndQuotientsKeepTheirOrder) {
   Means().Weights("c", {3}, {0.5F, 0.25F, 2}).Step("Sub", {"c", "flat"}, {"s"});
   model_.Step("Div", {"s", "c"}, {"y"});

@@ -157,6 +157,7 @@ class OnnxDetector final : public FrameDetector {
         try {
           const std::vector<float> outputs = Answer(network, frame.data());
           CheckOutputs(outputs);
+          CheckDeclared(outputs.size());
           Confidence(outputs);
         } catch (const DetectorError& error) {
           throw UserError(fmt::format("{} (to a blank frame)", error.what()));
@@ -176,6 +177,20 @@ class OnnxDetector final : public FrameDetector {
           reading_.output, outputs.size(), config_.output_index, outputs.size() - 1));
     if (config_.output == DetectorOutput::kSoftmax && outputs.size() < 2)
       Refuse("has one output, of which perception.detector.output = softmax always makes 1");
+  }
+
+  // Where the file tells all sides in numbers, another count means that a step was read otherwise than it says.
+  void CheckDeclared(std::size_t values) const {
+    for (const OnnxValue& output : outline_.outputs) {
+      if (output.name != reading_.output || output.dims.empty()) continue;
+      std::size_t declared = 1;
+      for (const OnnxDim& dim : output.dims) declared *= static_cast<std::size_t>(dim.size);
+      if (declared != 0 && declared != values)
+        Refuse(fmt::format(
+            "its output '{}' is declared as {} and has {} values as OpenCV reads the model; allowed: "
+            "a model whose steps give what it declares",
+            output.name, output.ShapeText(), values));
+    }
   }
 
   std::string name_, bytes_;
