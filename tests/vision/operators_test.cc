@@ -307,6 +307,23 @@ TEST_F(Operators, AnOutputOfAnotherSizeThanDeclaredIsRefused) {
       "its output 'y' is declared as [1, 4] and has 3 values as OpenCV reads the model; allowed: a model");
 }
 
+TEST_F(Operators, AMeanByItsMapIsRefusedAndTheMapByItsMeanIsNot) {
+  model_.Step("Exp", {"frame"}, {"e"}).Step("GlobalAveragePool", {"e"}, {"m"});
+  const test::OnnxWriter before = model_;
+  model_.Step("Div", {"m", "e"}, {"d"}).Step("GlobalAveragePool", {"d"}, {"g"}).Step("Flatten", {"g"}, {"y"});
+  ExpectRefusal("operator Div (output 'd') divides [1, 3, 1, 1] by [1, 3, 8, 8], which OpenCV turns round");
+  model_ = before;
+  model_.Step("Div", {"e", "m"}, {"d"}).Step("Relu", {"d"}, {"r"}).Step("Flatten", {"r"}, {"y"});
+  double mean = 0.0;
+  for (int x = 0; x < 8; ++x) mean += std::exp((16.0 + x) / 256) / 8;
+  EXPECT_NEAR(Value(0), std::exp(16.0 / 256) / mean, 2e-6);
+}
+
+TEST_F(Operators, SoftmaxOfAMapBeforeOpset13IsRefused) {
+  model_.Step("Softmax", {"frame"}, {"s"}, {{"axis", std::int64_t{1}}}).Step("Flatten", {"s"}, {"y"});
+  ExpectRefusal("operator Softmax (output 's') is taken of [1, 3, 8, 8] from side 1 on as one");
+}
+
 TEST_F(Operators, DifferencesAndQuotientsKeepTheirOrder) {
   Means().Weights("c", {3}, {0.5F, 0.25F, 2}).Step("Sub", {"c", "flat"}, {"s"});
   model_.Step("Div", {"s", "c"}, {"y"});

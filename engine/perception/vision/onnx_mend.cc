@@ -10,6 +10,7 @@
 #include "engine/core/check.h"
 #include "engine/core/protobuf.h"
 #include "engine/perception/vision/onnx_fields.h"
+#include "engine/perception/vision/onnx_shapes.h"
 
 namespace ed3r::perception {
 namespace {
@@ -23,7 +24,7 @@ struct Attribute {
 // A node with its attributes that are numbers or words.
 struct Step {
   std::string op, name;
-  std::vector<std::string> inputs;
+  std::vector<std::string> inputs, outputs;
   std::map<std::string, Attribute> attributes;
 
   double Number(const std::string& attribute, double otherwise) const {
@@ -41,6 +42,7 @@ class Mender {
       if (!field.IsBytes()) return;
       if (field.number == onnx::kNodeOp) step_.op = field.bytes;
       if (field.number == onnx::kNodeName) step_.name = field.bytes;
+      if (field.number == onnx::kNodeOutput) step_.outputs.emplace_back(field.bytes);
       if (field.number == onnx::kNodeInput) step_.inputs.emplace_back(field.bytes);
       if (field.number == onnx::kNodeAttribute) ReadAttribute(field.bytes);
     });
@@ -56,7 +58,12 @@ class Mender {
     if (step_.op == "Gemm") return Gemm();
     if (step_.op == "AveragePool") CheckPadding();
     if (step_.op == "Clip" && step_.inputs.size() > 1) return {Clip()};
-    if (step_.op == "Div") CheckQuotient();
+    if (step_.op == "Div") {
+      CheckQuotient();
+      if (Computed(0) && Computed(1)) return WithNamedInputs({kFirstOperand, kSecondOperand});
+    }
+    if (step_.op.ends_with("Softmax") && around_.opset < 13 && Computed(0))
+      return WithNamedInputs({fmt::format("{}{} of ", kFlattened, step_.Number("axis", 1))});
     if (step_.op == "Resize" && step_.Number("antialias", 0) != 0)
       Refuse("has antialias = 1, which OpenCV passes over; allowed: 0");
     if (step_.op.ends_with("Softmax") && around_.opset >= 13 && !step_.Has("axis"))
@@ -129,6 +136,33 @@ class Mender {
       Refuse(
           "divides a constant of several numbers by what is computed, which OpenCV turns round; allowed: one "
           "number, or a Mul by the quotient of 1");
+  }
+
+  bool Computed(std::size_t input) const {
+    return input < step_.inputs.size() && !around_.elements.contains(step_.inputs[input]);
+  }
+
+  // CheckShapes finds the inputs by these names.
+  std::vector<std::string> WithNamedInputs(const std::vector<std::string>& names) const {
+    std::vector<std::string> nodes;
+    ProtobufWriter step;
+    std::size_t input = 0;
+    const std::string text =
+        fmt::format("{} (output '{}')", step_.op, step_.outputs.empty() ? "" : step_.outputs.front());
+    ForEachField(node_, name_, [&](const ProtobufField& field) {
+      if (field.number != onnx::kNodeInput || input >= names.size()) {
+        step.Copy(field);
+        return;
+      }
+      const std::string named = names[input++] + text;
+      ProtobufWriter identity;
+      identity.Bytes(onnx::kNodeInput, field.bytes).Bytes(onnx::kNodeOutput, named);
+      identity.Bytes(onnx::kNodeName, named).Bytes(onnx::kNodeOp, "Identity");
+      nodes.push_back(identity.bytes());
+      step.Bytes(onnx::kNodeInput, named);
+    });
+    nodes.push_back(step.bytes());
+    return nodes;
   }
 
   static std::string LastAxis() {
