@@ -324,6 +324,19 @@ TEST_F(Operators, SoftmaxOfAMapBeforeOpset13IsRefused) {
   ExpectRefusal("operator Softmax (output 's') is taken of [1, 3, 8, 8] from side 1 on as one");
 }
 
+TEST_F(Operators, ACastThatCutsOffIsRefusedAndOneOfShapesIsNot) {
+  Means().Step("Cast", {"flat"}, {"c"}, {{"to", std::int64_t{7}}});
+  model_.Step("Cast", {"c"}, {"y"}, {{"to", std::int64_t{1}}});
+  ExpectRefusal("operator Cast (node 'the Cast') casts to int64, and OpenCV cuts nothing off");
+  model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 3});
+  model_.Step("GlobalAveragePool", {"frame"}, {"m"}).Step("Shape", {"m"}, {"s"}).Integers("at", {0});
+  model_.Step("Gather", {"s", "at"}, {"n"}, {{"axis", std::int64_t{0}}}).Integers("rest", {-1});
+  model_.Step("Cast", {"n"}, {"i"}, {{"to", std::int64_t{7}}});
+  model_.Step("Concat", {"i", "rest"}, {"to"}, {{"axis", std::int64_t{0}}})
+      .Step("Reshape", {"m", "to"}, {"y"});
+  Expect({red_, green_, blue_});
+}
+
 TEST_F(Operators, DifferencesAndQuotientsKeepTheirOrder) {
   Means().Weights("c", {3}, {0.5F, 0.25F, 2}).Step("Sub", {"c", "flat"}, {"s"});
   model_.Step("Div", {"s", "c"}, {"y"});

@@ -64,6 +64,7 @@ class Mender {
     }
     if (step_.op.ends_with("Softmax") && around_.opset < 13 && Computed(0))
       return WithNamedInputs({fmt::format("{}{} of ", kFlattened, step_.Number("axis", 1))});
+    if (step_.op == "Cast") CheckCast();
     if (step_.op == "Resize" && step_.Number("antialias", 0) != 0)
       Refuse("has antialias = 1, which OpenCV passes over; allowed: 0");
     if (step_.op.ends_with("Softmax") && around_.opset >= 13 && !step_.Has("axis"))
@@ -136,6 +137,14 @@ class Mender {
       Refuse(
           "divides a constant of several numbers by what is computed, which OpenCV turns round; allowed: one "
           "number, or a Mul by the quotient of 1");
+  }
+
+  void CheckCast() const {
+    const auto to = static_cast<std::uint64_t>(step_.Number("to", 1));
+    const bool real = to == onnx::kFloat || to == onnx::kFloat16 || to == onnx::kDouble;
+    if (!real && Computed(0) && !around_.whole.contains(step_.inputs[0]))
+      Refuse(fmt::format("casts to {}, and OpenCV cuts nothing off; allowed: float, or a Floor before",
+                         onnx::TypeName(to)));
   }
 
   bool Computed(std::size_t input) const {

@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,7 @@ struct OnnxSurroundings {
   std::map<std::string, float> bounds;           // constants of one number
   std::map<std::string, std::int64_t> elements;  // of all constants
   std::int64_t opset = 1;
+  std::set<std::string> whole;  // values that are whole numbers, or come from shapes and constants alone
   std::map<std::string, std::vector<std::int64_t>> lists;  // constants of whole numbers
 };
 

@@ -53,6 +53,7 @@ class Rewriter {
       if (field.number == onnx::kOpset && field.IsBytes()) ReadOpset(field.bytes);
       if (field.number == onnx::kGraph && field.IsBytes()) FindBounds(field.bytes);
     });
+    FindWhole();
     ProtobufWriter out;
     ForEachField(bytes, name_, [&](const ProtobufField& field) {
       if (field.number != onnx::kGraph || !field.IsBytes()) {
@@ -85,6 +86,20 @@ class Rewriter {
     if (!needed_.contains(reading_.input))
       Refuse(
           fmt::format("its output '{}' does not depend on its input '{}'", reading_.output, reading_.input));
+  }
+
+  // Of these nothing is cut off by a Cast.
+  void FindWhole() {
+    const std::set<std::string> makes_whole = {"Shape", "Size",  "ArgMax", "ArgMin", "Floor",
+                                               "Ceil",  "Round", "Equal",  "Less",   "Greater"};
+    for (const OnnxStep& step : outline_.steps) {
+      const bool of_whole =
+          std::all_of(step.inputs.begin(), step.inputs.end(), [&](const std::string& input) {
+            return input.empty() || around_.whole.contains(input) || outline_.weights.contains(input);
+          });
+      if (of_whole || makes_whole.contains(step.op))
+        around_.whole.insert(step.outputs.begin(), step.outputs.end());
+    }
   }
 
   // Of the standard's own operators.
