@@ -10,7 +10,6 @@
 #include "engine/core/check.h"
 #include "engine/core/protobuf.h"
 #include "engine/perception/vision/onnx_fields.h"
-#include "engine/perception/vision/onnx_shapes.h"
 
 namespace ed3r::perception {
 namespace {

@@ -24,6 +24,10 @@
 
 namespace ed3r::perception {
 
+// Names of steps that hand on what another step takes; the other's text follows.
+inline constexpr char kFirstOperand[] = "first operand of ", kSecondOperand[] = "second operand of ",
+                      kFlattened[] = "flattened from side ";
+
 // What the steps stand among.
 struct OnnxSurroundings {
   std::string producer;                          // the model's producer_name

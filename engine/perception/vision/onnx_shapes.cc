@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/core/check.h"
+#include "engine/perception/vision/onnx_mend.h"
 
 namespace ed3r::perception {
 namespace {

@@ -8,10 +8,6 @@
 
 namespace ed3r::perception {
 
-// Names of steps that hand on what another step takes; the other's text follows.
-inline constexpr char kFirstOperand[] = "first operand of ", kSecondOperand[] = "second operand of ",
-                      kFlattened[] = "flattened from side ";
-
 // `input`: the frame's shape. `name` begins messages. Throws UserError.
 void CheckShapes(const cv::dnn::Net& network, const cv::dnn::MatShape& input, const std::string& name);
 
