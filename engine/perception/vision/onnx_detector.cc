@@ -29,7 +29,7 @@ constexpr double kRounding = 1e-5;
 
 class OnnxDetector final : public FrameDetector {
  public:
-  OnnxDetector(const std::string& key, const std::string& path, std::string bytes,
+  OnnxDetector(const std::string& key, const std::string& path, const std::string& bytes,
                const DetectorConfig& config)
       : name_(fmt::format("{}: {}", key, path)), config_(config), networks_([this] { return Load(); }) {
     CheckScaling(config_);
@@ -206,7 +206,7 @@ class OnnxDetector final : public FrameDetector {
 
 std::shared_ptr<const FrameDetector> MakeOnnxDetector(const std::string& key, const std::string& path,
                                                       std::string bytes, const DetectorConfig& config) {
-  return std::make_shared<OnnxDetector>(key, path, std::move(bytes), config);
+  return std::make_shared<OnnxDetector>(key, path, bytes, config);
 }
 
 }  // namespace ed3r::perception
