@@ -51,7 +51,7 @@ std::shared_ptr<const FrameDetector> Load(const std::string& key, const std::str
   if (!ours) bytes = WithWeightsInside(std::move(bytes), name, fmt::format("{}: {}", key, name));
   fingerprint.Update(fmt::format("{} {}\n", key, bytes.size()));
   fingerprint.Update(bytes);
-  if (!ours) return MakeOnnxDetector(key, name, std::move(bytes), config);
+  if (!ours) return MakeOnnxDetector(key, name, bytes, config);
   auto model =
       std::make_shared<const DetectorModel>(ParseDetectorModel(bytes, fmt::format("{}: {}", key, name)));
   if (arithmetic == Arithmetic::kInteger && model->quantization.empty())

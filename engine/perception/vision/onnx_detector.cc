@@ -205,7 +205,8 @@ class OnnxDetector final : public FrameDetector {
 }  // namespace
 
 std::shared_ptr<const FrameDetector> MakeOnnxDetector(const std::string& key, const std::string& path,
-                                                      std::string bytes, const DetectorConfig& config) {
+                                                      const std::string& bytes,
+                                                      const DetectorConfig& config) {
   return std::make_shared<OnnxDetector>(key, path, bytes, config);
 }
 

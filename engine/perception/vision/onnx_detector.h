@@ -14,6 +14,6 @@ namespace ed3r::perception {
 // OpenCV can run, for a model that declares another input or output than the configuration, and for an answer that is not
 // what the configuration says.
 std::shared_ptr<const FrameDetector> MakeOnnxDetector(const std::string& key, const std::string& path,
-                                                      std::string bytes, const DetectorConfig& config);
+                                                      const std::string& bytes, const DetectorConfig& config);
 
 }  // namespace ed3r::perception
