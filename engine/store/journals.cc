@@ -157,24 +157,19 @@ void CheckJournals(const std::string& file, const std::function<std::optional<Fi
   }
   if (!strange.empty())
     throw UserError(fmt::format(
-        "{0}: {0}{1} is of another results file than this one, which was put in its place since; SQLite "
-        "would "
-        "write over this one what is in it: take {0}{1} out of the folder to read this file as it is, or "
-        "put the file back that it is of",
+        "{0}: {0}{1} is of another results file than this one, which was put in its place since; "
+        "SQLite would write over this one what is in it: take {0}{1} out of the folder to read this file as "
+        "it is, or put the file back that it is of",
         file, strange));
 }
 
 void CheckNoJournals(const std::string& file, const std::string& owner) {
-  for (const char* suffix : {"-wal", "-journal"}) {
-    const bool holds = std::string(suffix) == "-wal" ? StatesOfLog(file + suffix).has_value()
-                                                     : FirstPageOfJournal(file + suffix).has_value();
-    if (holds)
-      throw UserError(
-          fmt::format("{0}{1}: holds commits of {2}: put the two beside each other under these names, or "
-                      "take {0}{1} away "
-                      "where its commits are not wanted",
-                      file, suffix, owner));
-  }
+  const bool has_log = StatesOfLog(file + "-wal").has_value();
+  if (has_log || FirstPageOfJournal(file + "-journal"))
+    throw UserError(
+        fmt::format("{0}{1}: holds commits of {2}: put the two beside each other under these names, or take "
+                    "{0}{1} away where its commits are not wanted",
+                    file, has_log ? "-wal" : "-journal", owner));
 }
 
 }  // namespace ed3r::store

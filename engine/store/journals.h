@@ -12,12 +12,14 @@ namespace ed3r::store {
 
 // The mark, in SQLite's schema cookie: changes of the schema count on from it.
 std::int64_t DrawMark();
+
 // What the first page of a file tells of its state.
 struct FileState {
   std::uint32_t changes = 0, mark = 0;
   std::uint32_t pages = 0;
   bool operator==(const FileState&) const = default;
 };
+
 // Whether `after` is `before`, with changes of the schema of one session.
 bool IsSameMark(std::int64_t before, std::int64_t after);
 

@@ -225,8 +225,8 @@ MergeSummary MergeStores(const std::string& out, const std::vector<std::string>&
   StoreFile file(out, all.recipe, all.layout, {.other_code = OtherCode::kAccept});  // looked at already
   try {
     Transaction transaction(file.database(), Transaction::Kind::kWrite);
-    file.TakeUp(all.recipe, all.layout);
     WriteFirstPage(file.database());
+    file.TakeUp(all.recipe, all.layout);
     if (file.grown().empty()) CheckWhole(file.database(), all.layout);  // else looked through before it grows
     Target target(file.database(), all.layout, out);
     for (const std::vector<std::string>& of_plan : all.by_plan) AddAll(target, all, of_plan);
