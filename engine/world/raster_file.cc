@@ -101,8 +101,12 @@ void RasterFile::OpenAlone() {
   if (gdal_->alone) gdal_->alone->GetGeoTransform(unused.data());  // GDAL looks for an .aux.xml only now
 }
 
-// One band of heights, and perhaps one that says where they are.
+// One page with one band of heights, and perhaps a band that says where they are. Overviews and masks are no pages.
 void RasterFile::CheckBands() {
+  if (char** const pages = dataset_->GetMetadata("SUBDATASETS"); CSLCount(pages) > 0)
+    Fail(fmt::format(
+        "{} pages; an elevation grid has one: take one out (gdal_translate GTIFF_DIR:1:'{}' one.tif)",
+        CSLCount(pages) / 2, std::filesystem::path(spec_.file).filename().string()));
   const int bands = dataset_->GetRasterCount();
   const bool with_alpha = bands == 2 && dataset_->GetRasterBand(2)->GetColorInterpretation() == GCI_AlphaBand;
   if (with_alpha) mask_ = dataset_->GetRasterBand(2);  // GDAL takes it for a mask where it is of bytes

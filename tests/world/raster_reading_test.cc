@@ -301,5 +301,25 @@ TEST_F(RasterReadingTest, ATextGridsLinesNeedNotBeItsRows) {
   for (const int in_line : {1, 10, 15, 30, 300}) EXPECT_EQ(says(12, 25, in_line), "44.00") << in_line;
 }
 
+// The first page was taken, without a word.
+TEST_F(RasterReadingTest, ATiffHasOnePage) {
+  WriteRaster(folder.Path("g.tif"), Slope());
+  GDALDataset* one = GDALDataset::Open(folder.Path("g.tif").c_str(), GDAL_OF_UPDATE);
+  const int overview = 2;
+  ASSERT_EQ(one->BuildOverviews("AVERAGE", 1, &overview, 0, nullptr, nullptr, nullptr), CE_None);
+  GDALClose(one);
+  EXPECT_EQ(Height(), "44.00");
+  one = GDALDataset::Open(folder.Path("g.tif").c_str());
+  const char* const append[] = {"APPEND_SUBDATASET=YES", nullptr};
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  WriteRaster(folder.Path("pages.tif"), Slope());
+  GDALClose(driver->CreateCopy(folder.Path("pages.tif").c_str(), one, FALSE, const_cast<char**>(append),
+                               nullptr, nullptr));
+  GDALClose(one);
+  EXPECT_EQ(Height("pages.tif"),
+            "'pages.tif': 2 pages; an elevation grid has one: take one out (gdal_translate "
+            "GTIFF_DIR:1:'pages.tif' one.tif)");
+}
+
 }  // namespace
 }  // namespace ed3r::world
