@@ -67,6 +67,41 @@ std::map<std::string, std::filesystem::path> Neighbours(const std::filesystem::p
   return found;
 }
 
+bool IsNameSign(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == ':';
+}
+
+// Whether <altunits>, "unit" or UNIT[ in a vertical system; `name` in lower case.
+bool IsCalledUnit(std::string_view name) {
+  constexpr std::array<std::string_view, 5> kEnds = {"unit", "units", "unittype", "unitsymbol", "unitname"};
+  return std::any_of(kEnds.begin(), kEnds.end(), [&](std::string_view end) { return name.ends_with(end); });
+}
+
+// What stands in the elements and keys of XML, JSON and WKT that are called so.
+std::vector<std::string> TextsCalledUnit(const std::string& text) {
+  constexpr std::size_t kLongest = 60;
+  const std::string lower = LowerCase(text);
+  const std::size_t vertical = lower.find("vertcs");  // of the lengths' unit others tell
+  std::vector<std::string> found;
+  for (std::size_t at = lower.find("unit"); at != std::string::npos; at = lower.find("unit", at + 1)) {
+    std::size_t begin = at, end = at;
+    while (begin > 0 && IsNameSign(lower[begin - 1])) --begin;
+    while (end < lower.size() && IsNameSign(lower[end])) ++end;
+    if (begin == 0 || end == lower.size() ||
+        !IsCalledUnit(std::string_view(lower).substr(begin, end - begin)))
+      continue;
+    std::size_t value = std::string::npos;
+    if (lower[begin - 1] == '<') value = lower.find('>', end);
+    if (lower[begin - 1] == '"' && lower[end] == '"') value = lower.find_first_not_of(" \t\r\n:[", end + 1);
+    if (lower[end] == '[' && at > vertical) value = end;
+    if (value == std::string::npos) continue;
+    const std::string_view rest = std::string_view(text).substr(value + 1, kLongest);
+    found.emplace_back(
+        rest.substr(0, std::min(rest.find_first_of(lower[end] == '[' ? ",]" : "<\""), rest.size())));
+  }
+  return found;
+}
+
 bool AreAlike(const std::filesystem::path& a, const std::filesystem::path& b) {
   return std::filesystem::equivalent(a, b) ||
          ReadFile(a.string(), kMaxModelBytes) == ReadFile(b.string(), kMaxModelBytes);
@@ -120,6 +155,27 @@ std::string WhyNeighboursCannotBeRead(const std::filesystem::path& file) {
           name);
   }
   return "";
+}
+
+std::vector<MetadataUnit> UnitsOfMetadata(const std::filesystem::path& file) {
+  constexpr std::array<std::string_view, 3> kEndings = {".xml", ".json", ".aux.json"};
+  std::vector<MetadataUnit> units;
+  for (const std::filesystem::path& raster : NamesAlongLinks(file)) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(raster.parent_path(), error)) {
+      const std::string name = entry.path().filename().string();
+      const bool beside = std::any_of(kEndings.begin(), kEndings.end(), [&](std::string_view ending) {
+        const auto is = [&](const std::filesystem::path& begin) {
+          return LowerCase(name) == LowerCase(begin.string()).append(ending);
+        };
+        return is(raster.stem()) || is(raster.filename());
+      });
+      if (!beside || !entry.is_regular_file(error)) continue;
+      for (const std::string& text : TextsCalledUnit(ReadFile(entry.path().string(), kMaxModelBytes)))
+        units.push_back({name, text});
+    }
+  }
+  return units;
 }
 
 std::string MaskBeside(const std::filesystem::path& file) {

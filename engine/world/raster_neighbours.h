@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace ed3r::world {
 
@@ -20,5 +21,12 @@ RasterName NameWithNeighbours(const std::filesystem::path& file);
 
 // The mask beside it, whatever the case of its ending, or "".
 std::string MaskBeside(const std::filesystem::path& file);
+
+// What its metadata beside it, which GDAL does not read, says of units of length: what stands in elements or keys called
+// unit, units, altunits and the like, and in vertical systems. Of a link, beside all that it leads to, too.
+struct MetadataUnit {
+  std::string file, text;  // "g.tif.xml", "US survey feet"
+};
+std::vector<MetadataUnit> UnitsOfMetadata(const std::filesystem::path& file);
 
 }  // namespace ed3r::world

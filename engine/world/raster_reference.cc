@@ -12,11 +12,14 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/core/message.h"
 #include "engine/world/geo_keys.h"
 #include "engine/world/quiet_gdal.h"
+#include "engine/world/raster_neighbours.h"
 #include "engine/world/utm_zone.h"
 
 namespace ed3r::world {
@@ -268,27 +271,28 @@ class Reference {
     return {1.0, "m"};
   }
 
-  // Nothing is concluded from a band's name that speaks of a unit: somebody may have converted the heights.
+  // Nothing is concluded from a band's name or from metadata that speak of a unit: somebody may have converted the
+  // heights.
   void AskForNamedUnit() const {
-    const char* const description = dataset_.GetRasterBand(1)->GetDescription();
-    const std::string name = description == nullptr ? "" : description;
-    char** words = CSLTokenizeString2(LowerCase(name).c_str(), " _-()[]{}<>,;:=/.", 0);
-    std::string_view unit;
-    for (int i = 0; words != nullptr && words[i] != nullptr; ++i) {
-      const std::string_view word = words[i];
-      const bool plural = word.ends_with("metres") || word.ends_with("meters");
-      const std::optional<LengthUnit> found =
-          word == "usft" ? FindLengthUnit("us-ft")
-                         : FindLengthUnit(plural ? word.substr(0, word.size() - 1) : word);
-      if (found && found->m != 1.0) unit = found->name;
-    }
-    CSLDestroy(words);
-    if (unit.empty()) return;
-    const bool feet = unit == "ft" || unit == "us-ft";
-    Fail(
-        fmt::format("its band is called '{}', and nothing else tells the unit of its heights; add "
-                    "'height_unit: {} or 'm' to terrain.grid",
-                    name, feet ? "ft', 'us-ft'" : fmt::format("{}'", unit)));
+    const char* const name = dataset_.GetRasterBand(1)->GetDescription();
+    if (name != nullptr) AskForUnitIn(name, "its band is called");
+    for (const MetadataUnit& unit : UnitsOfMetadata(spec_.file))
+      AskForUnitIn(unit.text, fmt::format("{} beside it has a unit", unit.file));
+  }
+
+  void AskForUnitIn(const std::string& text, const std::string& where) const {
+    const std::vector<std::string> units = LengthUnitsIn(text);
+    const auto other =
+        std::find_if(units.rbegin(), units.rend(), [](const auto& unit) { return unit != "m"; });
+    if (other == units.rend()) return;
+    const bool feet = *other == "ft" || *other == "us-ft";
+    const std::string mend = feet ? "add 'height_unit: ft', 'us-ft' or 'm' to terrain.grid"
+                             : FindLengthUnit(*other)
+                                 ? fmt::format("add 'height_unit: {}' or 'm' to terrain.grid", *other)
+                                 : "convert them (gdal_calc.py), or add 'height_unit: m' to terrain.grid if "
+                                   "they are in metres";
+    Fail(OneLine(
+        fmt::format("{} '{}', and nothing else tells the unit of its heights; {}", where, text, mend)));
   }
 
   // Of a compound or a vertical coordinate system, or "".

@@ -165,5 +165,50 @@ TEST_F(RasterNeighboursTest, AnAuxXmlMayNotContradictTheCellsOfAGeoTiff) {
   EXPECT_EQ(with("500000, 20, 0, 4000090, 0, -20"), "'g.tif': its cells are 10 x -10, and 20 x -20" + end);
 }
 
+// Was read as metres: GDAL reads none of these files.
+TEST_F(RasterNeighboursTest, MetadataThatSpeakOfAnotherUnitAreAskedFor) {
+  WriteRaster(folder.Path("g.tif"), Slope());
+  const auto says = [&](const std::string& name, const std::string& text) {
+    folder.Write(name, text);
+    std::string message = Height("g.tif");
+    fs::remove(folder.Path(name));
+    return message;
+  };
+  const auto asks = [](const std::string& name, const std::string& unit) {
+    return fmt::format(
+        "'g.tif': {} beside it has a unit '{}', and nothing else tells the unit of its heights; add "
+        "'height_unit: ft', 'us-ft' or 'm' to terrain.grid",
+        name, unit);
+  };
+  const auto fgdc = [](const std::string& unit) {
+    return "<?xml version=\"1.0\"?>\n<metadata><idinfo><descript><purpose>contours of 5 feet, a unit of 3 "
+           "miles</purpose></descript></idinfo><spref><horizsys><geograph><geogunit>Decimal "
+           "degrees</geogunit>"
+           "</geograph><planar><planci><plandu>survey "
+           "feet</plandu></planci></planar></horizsys><vertdef><altsys>"
+           "<altdatum>NAVD88</altdatum><altres>1 ft</altres><altunits>" +
+           unit + "</altunits></altsys></vertdef></spref></metadata>";
+  };
+  for (const char* name : {"g.tif.xml", "g.xml", "G.TIF.XML"}) {
+    EXPECT_EQ(says(name, fgdc("US survey feet")), asks(name, "US survey feet"));
+    EXPECT_EQ(says(name, fgdc("meters")), "44.00") << name;
+  }
+  const std::string esri =
+      "<metadata><Esri><peXml>WKT&gt;PROJCS[&quot;UTM&quot;,UNIT[&quot;Foot&quot;,0.3048]],";
+  EXPECT_EQ(says("g.tif.xml", esri + "VERTCS[&quot;NAVD&quot;,UNIT[&quot;Foot_US&quot;,0.3]]</peXml></Esri>"),
+            asks("g.tif.xml", "&quot;Foot_US&quot;"));
+  EXPECT_EQ(says("g.tif.xml", esri + "</peXml></Esri></metadata>"), "44.00");
+  for (const char* name : {"g.aux.json", "g.tif.aux.json", "g.json"}) {
+    EXPECT_EQ(says(name, "{\"raster:bands\": [{\"unit\": \"ft\"}]}"), asks(name, "ft"));
+    EXPECT_EQ(says(name, "{\"units\": [\"feet\"]}"), asks(name, "feet"));
+    EXPECT_EQ(says(name, "{\"unit\": \"m\", \"community\": \"Seven Mile\", \"by\": \"unit 3 ft\"}"), "44.00");
+  }
+  EXPECT_EQ(says("other.tif.xml", fgdc("feet")), "44.00");
+  TestRaster told = Slope();
+  told.unit = "m";
+  WriteRaster(folder.Path("g.tif"), told);
+  EXPECT_EQ(says("g.tif.xml", fgdc("feet")), "44.00");  // the raster tells itself
+}
+
 }  // namespace
 }  // namespace ed3r::world

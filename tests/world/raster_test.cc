@@ -290,29 +290,32 @@ TEST_F(RasterTest, ACellFarFromAllOthersIsAHoleOrASpike) {
 TEST_F(RasterTest, ABandThatIsCalledAUnitIsAskedFor) {
   TestRaster raster;
   raster.stored = Slope;
-  const auto call = [&](const char* name) {
-    WriteRaster(folder.Path("g.tif"), raster);
-    GDALDataset* dataset = GDALDataset::Open(folder.Path("g.tif").c_str(), GDAL_OF_UPDATE);
-    ASSERT_NE(dataset, nullptr);
-    dataset->GetRasterBand(1)->SetDescription(name);
-    GDALClose(dataset);
-  };
   for (const auto& [name, units] :
        {std::pair("Elevation (ft)", "ft', 'us-ft'"), std::pair("DEM_feet", "ft', 'us-ft'"),
         std::pair("z usft", "ft', 'us-ft'"), std::pair("Elevation (dm)", "dm'"),
         std::pair("height_cm", "cm'"), std::pair("[mm]", "mm'"), std::pair("Height in decimeters", "dm'"),
         std::pair("z: kilometres", "km'")}) {
-    call(name);
+    raster.name = name;
     EXPECT_EQ(
-        Message("    file: g.tif\n"),
+        Message(raster),
         fmt::format("'g.tif': its band is called '{}', and nothing else tells the unit of its heights; add "
                     "'height_unit: {} or 'm' to terrain.grid",
                     name, units));
-    ExpectSlope(*Load("    file: g.tif\n    height_unit: ft\n"), 10.0, kFootM);
+    ExpectSlope(*Load(raster, "    height_unit: ft\n"), 10.0, kFootM);
   }
-  for (const char* name : {"Elevation (m)", "height_metres", "DEM"}) {
-    call(name);
-    ExpectSlope(*Load("    file: g.tif\n"), 10.0, 1.0);
+  for (const char* name : {"Elevation (yd)", "DEM_yards", "z, fathoms", "Height in"}) {
+    raster.name = name;
+    EXPECT_EQ(
+        Message(raster),
+        fmt::format("'g.tif': its band is called '{}', and nothing else tells the unit of its heights; "
+                    "convert them (gdal_calc.py), or add 'height_unit: m' to terrain.grid if they are in "
+                    "metres",
+                    name));
+    ExpectSlope(*Load(raster, "    height_unit: m\n"), 10.0, 1.0);
+  }
+  for (const char* name : {"Elevation (m)", "height_metres", "DEM", "DEM 10m", "Height in metres"}) {
+    raster.name = name;
+    ExpectSlope(*Load(raster), 10.0, 1.0);
   }
 }
 

@@ -28,6 +28,7 @@ struct TestRaster {
   };                   // by column, and by row from the south
   std::string system;  // what OGRSpatialReference understands, "" for none
   std::string unit;    // of the band
+  std::string name;    // of the band
   std::optional<double> scale, offset, no_data;
   std::function<bool(int, int)> masked;       // cells that the internal mask leaves out
   std::function<bool(int, int)> transparent;  // by an alpha band
@@ -65,6 +66,7 @@ inline void WriteRaster(const std::string& path, const TestRaster& raster) {
   if (raster.scale) band.SetScale(*raster.scale);
   if (raster.offset) band.SetOffset(*raster.offset);
   if (!raster.unit.empty()) band.SetUnitType(raster.unit.c_str());
+  if (!raster.name.empty()) band.SetDescription(raster.name.c_str());
   if (raster.transparent) dataset->GetRasterBand(2)->SetColorInterpretation(GCI_AlphaBand);
   if (raster.masked) {
     ASSERT_EQ(dataset->CreateMaskBand(GMF_PER_DATASET), CE_None);
