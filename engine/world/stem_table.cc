@@ -7,9 +7,12 @@
 #include <cctype>
 #include <charconv>
 #include <utility>
+#include <vector>
 
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/core/message.h"
+#include "engine/world/length_unit.h"
 #include "engine/world/stem_map.h"
 #include "engine/world/utm_zone.h"
 
@@ -147,7 +150,25 @@ void StemTable::FindMapped(const std::string& name, const std::string& header) {
       FailAt(spec_.columns_place, fmt::format("forest.stem_map.columns: {} and {} are both {}; name one",
                                               name, where.column->name, kMeanings[column.quantity].what));
     where = {&column, table_.Column(header, fmt::format("forest.stem_map.columns has it as {}", name))};
+    CheckUnit(column, header);
   }
+}
+
+// "height_ft" mapped as height_m.
+void StemTable::CheckUnit(const StemColumn& column, const std::string& header) const {
+  const std::vector<std::string> said = LengthUnitsIn(header);
+  const auto is_its_own = [&](const std::string& unit) {
+    const std::string_view plain = unit == "us-ft"            ? "ft"
+                                   : unit.starts_with("inch") ? "in"
+                                                              : std::string_view(unit);
+    return plain == column.unit;
+  };
+  if (said.empty() || std::any_of(said.begin(), said.end(), is_its_own)) return;
+  FailAt(
+      spec_.columns_place,
+      OneLine(fmt::format("forest.stem_map.columns: {} is '{}', whose name says {}; allowed: {}, or a name "
+                          "that says the unit of its values; correct one of them",
+                          column.name, header, said.back(), NamesOf(column.quantity))));
 }
 
 void StemTable::FindByName(const StemColumn& column) {

@@ -55,6 +55,7 @@ class StemTable {
 
   StemTable(const StemMapSpec& spec, DelimitedText file);
   void FindMapped(const std::string& name, const std::string& header);
+  void CheckUnit(const StemColumn& column, const std::string& header) const;
   void FindByName(const StemColumn& column);
   void CheckAbsence(StemQuantity quantity) const;
   void CheckOneMeaning() const;

@@ -154,6 +154,33 @@ TEST_F(StemMapTest, AColumnHasOneMeaning) {
             "meaning a column");
 }
 
+// Feet were read as metres, inches as centimetres: forests of a third of their height.
+TEST_F(StemMapTest, AColumnIsNotMappedAgainstTheUnitOfItsName) {
+  spec.columns_place = "w.yaml:7:5";
+  const auto says = [&](const std::string& name, const std::string& header) {
+    spec.columns = {{name, header}};
+    std::string text = kHeader;
+    const std::string plain = name.starts_with("dbh") ? "dbh_cm" : "height_m";
+    return Message(text.replace(text.find(plain), plain.size(), header) + kRows);
+  };
+  const auto refused = [](const std::string& name, const std::string& header, const std::string& unit) {
+    return fmt::format(
+        "w.yaml:7:5: forest.stem_map.columns: {} is '{}', whose name says {}; allowed: {}, or a name "
+        "that says the unit of its values; correct one of them",
+        name, header, unit,
+        name.starts_with("dbh") ? "dbh_cm | dbh_mm | dbh_m | dbh_in" : "height_m | height_ft");
+  };
+  for (const auto& [header, unit] : {std::pair("HT_FT", "ft"), std::pair("heightFeet", "ft"),
+                                     std::pair("Height (yd)", "yd"), std::pair("h [cm]", "cm")})
+    EXPECT_EQ(says("height_m", header), refused("height_m", header, unit));
+  for (const auto& [header, unit] : {std::pair("DBH in", "in"), std::pair("d_mm", "mm")})
+    EXPECT_EQ(says("dbh_cm", header), refused("dbh_cm", header, unit));
+  for (const char* header : {"DBH", "DBH_1.3m", "DBH (cm) in 2020", "DBH at 1.3 m", "DBH_cm"})
+    EXPECT_EQ(says("dbh_cm", header), "no error") << header;
+  for (const char* header : {"HT", "height in metres", "shift_top"})
+    EXPECT_EQ(says("height_m", header), "no error") << header;
+}
+
 TEST_F(StemMapTest, ColumnsByOtherNamesAndInOtherUnits) {
   spec.columns = {{"x_m", "E"}, {"y_m", "N"}, {"dbh_mm", "DBH"}, {"height_ft", "HT"}};
   spec.columns["crown_base_m"] = "CBH";
