@@ -15,49 +15,49 @@
 namespace ed3r::fit {
 namespace {
 
-constexpr std::string_view kTime = "time_s", kPower = "power_w", kVoltage = "voltage_v",
-                           kCurrent = "current_a", kSpeed = "airspeed_mps", kClimb = "climb_mps",
-                           kAltitude = "altitude_m", kPayload = "payload_kg", kMass = "mass_kg";
-
 struct UnitWord {
-  std::string_view meaning;
-  double factor;
-  std::string_view words;  // of the column's name: any of them, between blanks
+  std::string_view ending;  // of the meanings whose unit is another one
+  double factor;            // 0: none makes ours of it
+  std::string_view words;   // of the column's name: any of them, between blanks
 };
 
 // Words of column names that say another unit than ours.
 constexpr UnitWord kUnitWords[] = {
-    {kTime, 1e-9, " ns nsec nanosecond nanoseconds "},
-    {kTime, 1e-6, " us usec microsecond microseconds "},
-    {kTime, 1e-3, " ms msec millisecond milliseconds "},
-    {kTime, 60, " min mins minutes "},
-    {kPower, 1e3, " kw kilowatt kilowatts "},
-    {kPower, 1e-3, " mw milliwatt milliwatts "},
-    {kPower, 745.7, " hp horsepower "},
-    {kVoltage, 1e-3, " mv millivolt millivolts "},
-    {kCurrent, 1e-3, " ma milliamp milliamps milliampere milliamperes "},
-    {kSpeed, 1 / 3.6, " kmh kmhr kph kmph kilometersperhour kilometresperhour "},
-    {kSpeed, 0.44704, " mph mih milesperhour "},
-    {kSpeed, 0.514444, " kn kt kts knot knots "},
-    {kSpeed, 0.3048, " fps fts ftsec feetpersecond "},
-    {kSpeed, 0.01, " cms cmsec "},
-    {kClimb, 1 / 3.6, " kmh kmhr kph kmph kilometersperhour kilometresperhour "},
-    {kClimb, 0.44704, " mph mih milesperhour "},
-    {kClimb, 0.514444, " kn kt kts knot knots "},
-    {kClimb, 0.00508, " fpm ftmin feetperminute "},
-    {kClimb, 0.3048, " fps fts ftsec feetpersecond "},
-    {kClimb, 1.0 / 60.0, " mmin "},
-    {kClimb, 0.01, " cms cmsec "},
-    {kAltitude, 0.3048, " ft foot feet "},
-    {kAltitude, 1e3, " km "},
-    {kAltitude, 0.01, " cm "},
-    {kAltitude, 1e-3, " mm "},
-    {kPayload, 1e-3, " g gram grams "},
-    {kPayload, 0.453592, " lb lbs pound pounds "},
-    {kPayload, 0.0283495, " oz ounce ounces "},
-    {kMass, 1e-3, " g gram grams "},
-    {kMass, 0.453592, " lb lbs pound pounds "},
-    {kMass, 0.0283495, " oz ounce ounces "}};
+    {"_s", 1e-9, " ns nsec nanosecond nanoseconds "},
+    {"_s", 1e-6, " us usec microsecond microseconds "},
+    {"_s", 1e-3, " ms msec millisecond milliseconds "},
+    {"_s", 60, " min mins minutes "},
+    {"_s", 3600, " h hr hrs hour hours "},
+    {"_w", 1e3, " kw kilowatt kilowatts "},
+    {"_w", 1e-3, " mw milliwatt milliwatts "},
+    {"_w", 745.7, " hp horsepower "},
+    {"_w", 0, " wh kwh mwh kj joule joules "},
+    {"_v", 1e-3, " mv millivolt millivolts "},
+    {"_a", 1e-3, " ma milliamp milliamps milliampere milliamperes "},
+    {"_a", 0, " ah mah "},
+    {"_mps", 1 / 3.6, " kmh kmhr kph kmph kilometersperhour kilometresperhour "},
+    {"_mps", 0.44704, " mph mih milesperhour "},
+    {"_mps", 0.514444, " kn kt kts knot knots "},
+    {"_mps", 0.00508, " fpm ftmin feetperminute "},
+    {"_mps", 0.3048, " fps fts ftsec feetpersecond "},
+    {"_mps", 0.9144, " yds ydsec yardspersecond "},
+    {"_mps", 1.0 / 60.0, " mmin metersperminute metresperminute "},
+    {"_mps", 0.1, " dms dmsec "},
+    {"_mps", 0.01, " cms cmsec "},
+    {"_mps", 0.001, " mms mmsec "},
+    {"_m", 0.3048, " ft foot feet usft ftus "},
+    {"_m", 0.9144, " yd yds yard yards "},
+    {"_m", 1.8288, " fathom fathoms "},
+    {"_m", 0.0254, " inch inches "},
+    {"_m", 1852, " nmi "},
+    {"_m", 1609.344, " mile miles "},
+    {"_m", 1e3, " km kilometer kilometers kilometre kilometres "},
+    {"_m", 0.1, " dm decimeter decimeters decimetre decimetres "},
+    {"_m", 0.01, " cm centimeter centimeters centimetre centimetres "},
+    {"_m", 1e-3, " mm millimeter millimeters millimetre millimetres "},
+    {"_kg", 1e-3, " g gr gram grams "},
+    {"_kg", 0.453592, " lb lbs pound pounds "},
+    {"_kg", 0.0283495, " oz ounce ounces "}};
 
 // Whether a capital after a small letter begins a word, as in speedKmh but not in power_kW.
 enum class Capitals { kPlain, kBeginWords };
@@ -79,8 +79,9 @@ std::vector<std::string> WordsOf(std::string_view name, Capitals capitals) {
 
 // Adds to the words of a name those that a quotient makes of two or three: km/h, km_h, km h-1 and km per h are kmh, too.
 void AddQuotients(std::vector<std::string>& words) {
-  constexpr std::string_view kLengths = " km cm ft m mi kilometers kilometres miles feet ",
-                             kTimes = " h hr s sec min hour second minute ";
+  constexpr std::string_view
+      kLengths = " km dm cm mm ft m mi yd kilometers kilometres meters metres miles feet yards ",
+      kTimes = " h hr s sec min hour second minute ";
   const auto among = [](std::string_view list, const std::string& word) {
     return list.find(fmt::format(" {} ", word)) != std::string_view::npos;
   };
@@ -98,10 +99,10 @@ void AddQuotients(std::vector<std::string>& words) {
 std::optional<std::pair<std::string, double>> OtherUnit(std::string_view meaning, std::string_view name) {
   for (const Capitals capitals : {Capitals::kPlain, Capitals::kBeginWords}) {
     std::vector<std::string> words = WordsOf(name, capitals);
-    if (meaning == kSpeed || meaning == kClimb) AddQuotients(words);
+    if (meaning.ends_with("_mps")) AddQuotients(words);
     for (const UnitWord& unit : kUnitWords)
       for (const std::string& word : words)
-        if (unit.meaning == meaning && !word.empty() &&
+        if (meaning.ends_with(unit.ending) && !word.empty() &&
             unit.words.find(fmt::format(" {} ", word)) != std::string_view::npos)
           return std::pair{word, unit.factor};
   }
@@ -201,9 +202,14 @@ class UnitCheck {
 
   void CheckName(const std::string& meaning, const std::string& column) const {
     if (Believed(meaning)) return;
-    if (const auto unit = OtherUnit(meaning == "ground_speed_mps" ? kSpeed : meaning, column))
-      Refuse(meaning, fmt::format("the name says {}", unit->first),
-             Mend(meaning, {{unit->first.c_str(), unit->second}}));
+    const auto unit = OtherUnit(meaning, column);
+    if (!unit) return;
+    const auto& [word, factor] = *unit;
+    const std::string what = fmt::format("the name says {}", word);
+    if (factor != 0.0) Refuse(meaning, what, Mend(meaning, {{word.c_str(), factor}}));
+    Refuse(meaning, what,
+           fmt::format("no factor makes {} of that: name another column ('units: {{{}: 1}}' if it is right)",
+                       meaning, meaning));
   }
 
   void CheckTime() const {

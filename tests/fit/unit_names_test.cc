@@ -16,6 +16,7 @@ std::string Says(const std::string& meaning, const std::string& name) {
   std::map<std::string, std::string> columns = {{"time_s", "t"},       {"power_w", "p"},
                                                 {"airspeed_mps", "v"}, {"climb_mps", "w"},
                                                 {"altitude_m", "a"},   {"payload_kg", "load"}};
+  if (meaning == "ground_speed_mps") columns.erase("airspeed_mps");
   columns[meaning] = name;
   std::string header, row, format = "columns: {";
   for (const auto& [key, column] : columns) {
@@ -45,10 +46,23 @@ TEST(UnitNamesTest, OtherUnitsAreHeardHoweverTheyAreSpelt) {
         {"speed_fps", "0.3048"},
         {"Speed, mph", "0.44704"},
         {"v_kn", "0.514444"},
-        {"speed cm s^-1", "0.01"}}},
+        {"speed cm s^-1", "0.01"},
+        {"speed yd/s", "0.9144"},
+        {"speed mm/s", "0.001"},
+        {"speed_ft_min", "0.00508"}}},
+      {"ground_speed_mps", {{"gs (kn)", "0.514444"}}},
+      {"time_s", {{"time [h]", "3600"}}},
       {"climb_mps", {{"vs_ft_min", "0.00508"}, {"vs (ft/min)", "0.00508"}, {"vs m min-1", "0.0166667"}}},
       {"power_w", {{"power_kW", "1000"}, {"powerKw", "1000"}, {"Power [mW]", "0.001"}}},
-      {"altitude_m", {{"alt_ft", "0.3048"}, {"AltitudeFt", "0.3048"}, {"alt (cm)", "0.01"}}},
+      {"altitude_m",
+       {{"alt_ft", "0.3048"},
+        {"AltitudeFt", "0.3048"},
+        {"alt (cm)", "0.01"},
+        {"alt (yd)", "0.9144"},
+        {"alt_fathoms", "1.8288"},
+        {"alt inches", "0.0254"},
+        {"alt [dm]", "0.1"},
+        {"alt nmi", "1852"}}},
       {"payload_kg", {{"load (g)", "0.001"}, {"loadLbs", "0.453592"}}}};
   for (const auto& [meaning, names] : factors)
     for (const auto& [name, factor] : names) {
@@ -58,6 +72,13 @@ TEST(UnitNamesTest, OtherUnitsAreHeardHoweverTheyAreSpelt) {
       EXPECT_NE(message.find(fmt::format("put 'units: {{{}: {}}}' into", meaning, factor)), std::string::npos)
           << message;
     }
+}
+
+// What a battery gave so far was read as what it gives.
+TEST(UnitNamesTest, SumsAreNoRates) {
+  EXPECT_EQ(Says("power_w", "energy_Wh"),
+            "log.csv:1:1: power_w ('energy_Wh'): the name says wh; no factor makes power_w of that: name "
+            "another column ('units: {power_w: 1}' if it is right)");
 }
 
 TEST(UnitNamesTest, NamesThatMerelyHaveSuchLettersAreTaken) {
