@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/core/check.h"
@@ -28,9 +31,6 @@ struct Sample {
   auto operator<=>(const Sample&) const = default;
 };
 
-// Of the log as it is, or of a copy whose clock starts at 0.
-enum class Clock { kAsRecorded, kFromFirstRow };
-
 // Stamps that were rounded move by less: rows would meet otherwise.
 double HalfStepS(const Flight& flight) {
   std::vector<double> steps;
@@ -43,13 +43,13 @@ double HalfStepS(const Flight& flight) {
   return 0.5 * *middle * (1.0 + kRounding);
 }
 
-std::vector<Sample> SamplesOf(const std::vector<Part>& parts, Clock clock) {
+// `zero_s`: what each part's clock is taken to begin with.
+std::vector<Sample> SamplesOf(const std::vector<Part>& parts, const std::vector<double>& zero_s) {
   std::vector<Sample> samples;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const std::vector<FlightRow>& rows = parts[p].flight->rows;
-    const double zero_s = clock == Clock::kAsRecorded ? 0.0 : rows.front().time_s;
     for (const FlightRow& row : rows)
-      samples.push_back({row.power_w, row.airspeed_mps, row.time_s - zero_s, p});
+      samples.push_back({row.power_w, row.airspeed_mps, row.time_s - zero_s[p], p});
   }
   std::sort(samples.begin(), samples.end());
   return samples;
@@ -80,8 +80,9 @@ std::optional<std::size_t> OtherBeside(const std::vector<Sample>& samples, std::
 }
 
 // Counts for each part its rows that another one has too.
-void CheckParts(const std::vector<Part>& parts, const FlightLog* evaluated, Clock clock) {
-  const std::vector<Sample> samples = SamplesOf(parts, clock);
+void CheckParts(const std::vector<Part>& parts, const FlightLog* evaluated,
+                const std::vector<double>& zero_s) {
+  const std::vector<Sample> samples = SamplesOf(parts, zero_s);
   std::vector<double> half_steps_s;
   for (const Part& part : parts) half_steps_s.push_back(HalfStepS(*part.flight));
   std::vector<std::size_t> shared(parts.size(), 0);
@@ -95,6 +96,37 @@ void CheckParts(const std::vector<Part>& parts, const FlightLog* evaluated, Cloc
   }
 }
 
+// How far the clocks of two parts are apart at numbers that each has once: of a copy it is the same at all of them,
+// wherever it was cut.
+std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> ClockDifferences(
+    const std::vector<Sample>& samples) {
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<double>> differences_s;
+  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
+    std::map<std::size_t, std::vector<double>> times_s;  // by part
+    for (; end < samples.size() && samples[end].power_w == samples[begin].power_w &&
+           samples[end].airspeed_mps == samples[begin].airspeed_mps;
+         ++end)
+      times_s[samples[end].part].push_back(samples[end].time_s);
+    std::erase_if(times_s, [](const auto& part) { return part.second.size() > 1; });
+    if (times_s.empty()) continue;
+    for (auto one = times_s.begin(), next = std::next(one); next != times_s.end(); one = next++)
+      differences_s[{one->first, next->first}].push_back(next->second[0] - one->second[0]);
+  }
+  return differences_s;
+}
+
+// The middle of those that lie closest together, or none.
+std::optional<double> CommonDifference(std::vector<double> differences_s, double width_s) {
+  constexpr std::size_t kFewest = 3;
+  std::sort(differences_s.begin(), differences_s.end());
+  std::size_t most = 0, first = 0;
+  for (std::size_t begin = 0, end = 0; begin < differences_s.size(); ++begin) {
+    while (end < differences_s.size() && differences_s[end] - differences_s[begin] <= width_s) ++end;
+    if (end - begin > most) most = end - begin, first = begin;
+  }
+  return most < kFewest ? std::nullopt : std::optional(differences_s[first + most / 2]);
+}
+
 }  // namespace
 
 void CheckNoFlightTwice(const FlightLog& fitted, const FlightLog* evaluated) {
@@ -102,7 +134,16 @@ void CheckNoFlightTwice(const FlightLog& fitted, const FlightLog* evaluated) {
   for (const Flight& flight : fitted.flights) parts.push_back({&fitted, &flight});
   if (evaluated != nullptr)
     for (const Flight& flight : evaluated->flights) parts.push_back({evaluated, &flight});
-  for (const Clock clock : {Clock::kAsRecorded, Clock::kFromFirstRow}) CheckParts(parts, evaluated, clock);
+  const std::vector<double> as_recorded_s(parts.size(), 0.0);
+  std::vector<double> first_rows_s;
+  for (const Part& part : parts) first_rows_s.push_back(part.flight->rows.front().time_s);
+  CheckParts(parts, evaluated, as_recorded_s);
+  CheckParts(parts, evaluated, first_rows_s);
+  for (const auto& [pair, differences_s] : ClockDifferences(SamplesOf(parts, as_recorded_s))) {
+    const Part &one = parts[pair.first], &other = parts[pair.second];
+    if (const auto apart_s = CommonDifference(differences_s, 2.0 * HalfStepS(*one.flight)))
+      CheckParts({one, other}, evaluated, {0.0, *apart_s});
+  }
 }
 
 }  // namespace ed3r::fit

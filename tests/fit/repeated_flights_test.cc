@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "tests/flight_logs/complaint.h"
 
@@ -50,6 +51,25 @@ TEST(RepeatedFlightsTest, ACopyWithAnotherClockIsTheSameFlight) {
                 kSeen)
           << unit_s;
   EXPECT_EQ(Says([](FlightRow& row) { row.time_s = Rounded(row.time_s, 0.1); }), kSeen);
+}
+
+// Was judged as "never seen": its clock begins elsewhere, and so does its first row.
+TEST(RepeatedFlightsTest, ACopyThatIsCutAtItsStartIsTheSameFlight) {
+  const auto cut = [](std::size_t first, std::size_t step, const std::function<void(FlightRow&)>& change) {
+    FlightLog log = Course("b.csv", change);
+    std::vector<FlightRow> left;
+    for (std::size_t i = first; i < log.flights[0].rows.size(); i += step)
+      left.push_back(log.flights[0].rows[i]);
+    log.flights[0].rows = left;
+    const FlightLog fitted = Course("a.csv");
+    return flight_logs::Complaint([&] { CheckNoFlightTwice(fitted, &log); });
+  };
+  for (const std::size_t first : {1, 37, 140})
+    for (const double shift_s : {-81.17, 12.345, 1.7e9})
+      EXPECT_EQ(cut(first, 1, [&](FlightRow& row) { row.time_s += shift_s; }), kSeen)
+          << first << " " << shift_s;
+  EXPECT_EQ(cut(40, 1, [](FlightRow& row) { row.time_s = Rounded(row.time_s - 89.17, 0.1); }), kSeen);
+  EXPECT_EQ(cut(41, 2, [](FlightRow& row) { row.time_s -= 89.37; }), kSeen);  // every second row
 }
 
 // Its power, in whole watts, is that of the other now and then.
