@@ -90,7 +90,8 @@ def draw_energy(fit, directory):
     left.legend(fontsize=8, loc="upper left")
     for name, model in fit["models"].items():
         colour, _, text = STYLE.get(name, ("grey", "", name))
-        errors = np.sort(np.abs([f["error_pct"] for f in model[judged]["flights"]]))
+        # A flight of which no energy could be integrated (gaps in the log) has no error.
+        errors = np.sort(np.abs([f["error_pct"] for f in model[judged]["flights"] if f["error_pct"] is not None]))
         right.step(errors, 100 * np.arange(1, len(errors) + 1) / len(errors), where="post", color=colour, lw=1.8, label=text)
     right.axvline(BAND_PCT, color="black", lw=0.8, ls=":")
     right.set(xscale="log", ylim=(0, 101), xlim=(0.1, 100), xlabel="energy error of a flight [%]",
