@@ -71,12 +71,6 @@ bool IsNameSign(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == ':';
 }
 
-// Whether <altunits>, "unit" or UNIT[ in a vertical system; `name` in lower case.
-bool IsCalledUnit(std::string_view name) {
-  constexpr std::array<std::string_view, 5> kEnds = {"unit", "units", "unittype", "unitsymbol", "unitname"};
-  return std::any_of(kEnds.begin(), kEnds.end(), [&](std::string_view end) { return name.ends_with(end); });
-}
-
 // What stands in the elements and keys of XML, JSON and WKT that are called so.
 std::vector<std::string> TextsCalledUnit(const std::string& text) {
   constexpr std::size_t kLongest = 60;
@@ -108,6 +102,12 @@ bool AreAlike(const std::filesystem::path& a, const std::filesystem::path& b) {
 }
 
 }  // namespace
+
+bool IsCalledUnit(std::string_view name) {
+  constexpr std::array<std::string_view, 5> kEnds = {"unit", "units", "unittype", "unitsymbol", "unitname"};
+  const std::string lower = LowerCase(std::string(name));
+  return std::any_of(kEnds.begin(), kEnds.end(), [&](std::string_view end) { return lower.ends_with(end); });
+}
 
 RasterName NameWithNeighbours(const std::filesystem::path& file) {
   const std::vector<std::filesystem::path> names = NamesAlongLinks(file);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ed3r::world {
@@ -21,6 +22,9 @@ RasterName NameWithNeighbours(const std::filesystem::path& file);
 
 // The mask beside it, whatever the case of its ending, or "".
 std::string MaskBeside(const std::filesystem::path& file);
+
+// Whether what is called so tells a unit: "altunits", "VERTICAL_UNIT", but not "community".
+bool IsCalledUnit(std::string_view name);
 
 // What its metadata beside it, which GDAL does not read, says of units of length: what stands in elements or keys called
 // unit, units, altunits and the like, and in vertical systems. Of a link, beside all that it leads to, too.

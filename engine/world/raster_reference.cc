@@ -276,8 +276,22 @@ class Reference {
   void AskForNamedUnit() const {
     const char* const name = dataset_.GetRasterBand(1)->GetDescription();
     if (name != nullptr) AskForUnitIn(name, "its band is called");
+    for (GDALMajorObject* object :
+         {static_cast<GDALMajorObject*>(&dataset_), static_cast<GDALMajorObject*>(dataset_.GetRasterBand(1))})
+      AskForUnitIn(*object);
     for (const MetadataUnit& unit : UnitsOfMetadata(spec_.file))
       AskForUnitIn(unit.text, fmt::format("{} beside it has a unit", unit.file));
+  }
+
+  // "units=feet" among what programs write down besides.
+  void AskForUnitIn(GDALMajorObject& object) const {
+    char** const items = object.GetMetadata();
+    for (int i = 0; i < CSLCount(items); ++i) {
+      const std::string item = items[i], name = item.substr(0, item.find('='));
+      if (IsCalledUnit(name))
+        AskForUnitIn(item.substr(std::min(name.size() + 1, item.size())),
+                     fmt::format("its metadata have {}", name));
+    }
   }
 
   void AskForUnitIn(const std::string& text, const std::string& where) const {

@@ -165,6 +165,26 @@ TEST_F(RasterNeighboursTest, AnAuxXmlMayNotContradictTheCellsOfAGeoTiff) {
   EXPECT_EQ(with("500000, 20, 0, 4000090, 0, -20"), "'g.tif': its cells are 10 x -10, and 20 x -20" + end);
 }
 
+// As rioxarray and others write what they know of their data: was read as metres.
+TEST_F(RasterNeighboursTest, AUnitAmongTheMetadataOfARasterIsAskedFor) {
+  const auto with = [&](const std::string& item, bool of_band) {
+    WriteRaster(folder.Path("g.tif"), Slope());
+    GDALDataset* dataset = GDALDataset::Open(folder.Path("g.tif").c_str(), GDAL_OF_UPDATE);
+    GDALMajorObject* object = dataset;
+    if (of_band) object = dataset->GetRasterBand(1);
+    object->SetMetadataItem(item.substr(0, item.find('=')).c_str(), item.substr(item.find('=') + 1).c_str());
+    GDALClose(dataset);
+    return Height("g.tif");
+  };
+  for (const bool of_band : {false, true}) {
+    EXPECT_EQ(with("units=feet", of_band),
+              "'g.tif': its metadata have units 'feet', and nothing else tells the unit of its heights; add "
+              "'height_unit: ft', 'us-ft' or 'm' to terrain.grid");
+    EXPECT_EQ(with("units=m", of_band), "44.00");
+    EXPECT_EQ(with("community=Seven Mile", of_band), "44.00");
+  }
+}
+
 // Was read as metres: GDAL reads none of these files.
 TEST_F(RasterNeighboursTest, MetadataThatSpeakOfAnotherUnitAreAskedFor) {
   WriteRaster(folder.Path("g.tif"), Slope());
