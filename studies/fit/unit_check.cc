@@ -139,6 +139,7 @@ class UnitCheck {
   void Run() const {
     for (const auto& [meaning, column] : format_.columns) CheckName(meaning, column);
     CheckTime();
+    CheckTimeOfDay();
     constexpr double kFastMps = 25.0, kFastClimbMps = 15.0;
     CheckSpeed("airspeed_mps", kFastMps);
     CheckSpeed("ground_speed_mps", kFastMps);
@@ -226,7 +227,8 @@ class UnitCheck {
                                {"microseconds", 1e-6},
                                {"nanoseconds", 1e-9},
                                {"minutes", 60.0},
-                               {"hours", 3600.0}}) {
+                               {"hours", 3600.0},
+                               {"days", 86400.0}}) {
       const double as_guessed = step * guess.factor;
       if (as_guessed < (guess.factor > 1.0 ? 0.03 : kShortest) || as_guessed > kLongest) continue;
       constexpr double kSlowestLogS = 60.0;
@@ -241,6 +243,27 @@ class UnitCheck {
       Refuse("time_s", fmt::format("the median step is {:g} s", step),
              fmt::format("nothing is integrated over more than {:g} s; a log of a higher rate is needed",
                          kLongest));
+  }
+
+  // 115859 and then 115900: the clock leaps by 40 whenever a minute is full, by 4000 more at an hour, and never otherwise
+  // beyond a hundred.
+  void CheckTimeOfDay() const {
+    constexpr double kHundred = 100.0, kMinute = 60.0, kHour = 1e4;
+    constexpr int kFewest = 2;
+    if (Believed("time_s")) return;
+    const std::vector<double> times = Values(format_.columns.at("time_s"), "time_s");
+    int minutes = 0;
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      if (std::floor(times[i] / kHundred) == std::floor(times[i - 1] / kHundred)) continue;
+      const bool hour = std::floor(times[i] / kHour) != std::floor(times[i - 1] / kHour);
+      const double leap = times[i] - times[i - 1] - 0.4 * (kHundred + (hour ? kHour : 0.0));
+      if (!(std::fmod(times[i - 1], kHundred) < kMinute) || !(leap > 0.0 && leap < kMinute)) return;
+      ++minutes;
+    }
+    if (minutes >= kFewest)
+      Refuse("time_s",
+             fmt::format("it leaps by 40 whenever it reaches 60 beyond a hundred, {} times", minutes),
+             "it looks like a time of day, hhmmss: seconds are wanted");
   }
 
   void CheckSpeed(const std::string& meaning, double fast_mps) const {

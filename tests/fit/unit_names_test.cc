@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <map>
 #include <string>
 
@@ -79,6 +80,40 @@ TEST(UnitNamesTest, SumsAreNoRates) {
   EXPECT_EQ(Says("power_w", "energy_Wh"),
             "log.csv:1:1: power_w ('energy_Wh'): the name says wh; no factor makes power_w of that: name "
             "another column ('units: {power_w: 1}' if it is right)");
+}
+
+// What is said of 600 rows at 0.5 s whose clock stands so at each second and half second.
+std::string SaysOfTimes(const std::function<std::string(int, int)>& time) {
+  std::string text = "t,p,v,w\n";
+  for (int row = 0; row < 600; ++row) text += fmt::format("{},300,1,0\n", time(row / 2, row % 2 * 5));
+  return flight_logs::Complaint([&] {
+    CheckUnits(flight_logs::LogTable(CsvTable::Parse("log.csv", text)),
+               ParseLogFormat("f.yaml", "columns: {time_s: t, power_w: p, airspeed_mps: v, climb_mps: w}\n"));
+  });
+}
+
+// Each full minute was a gap, and the energies of held-out segments were others.
+TEST(UnitNamesTest, ATimeOfDayIsNoTimeInSeconds) {
+  const auto from = [](int start_s) {
+    return SaysOfTimes([=](int s, int tenths) {
+      s += start_s;
+      return fmt::format("{}{:02}{:02}.{}", s / 3600, s / 60 % 60, s % 60, tenths);
+    });
+  };
+  const std::string text =
+      "log.csv:1:1: time_s ('t'): it leaps by 40 whenever it reaches 60 beyond a hundred, 5 "
+      "times; it looks like a time of day, hhmmss: seconds are wanted";
+  EXPECT_EQ(from(36123), text);
+  EXPECT_EQ(from(43110), text);  // over the end of an hour
+  EXPECT_EQ(SaysOfTimes([](int s, int tenths) { return fmt::format("{}.{}", s < 60 ? s : s + 40, tenths); }),
+            "");
+}
+
+TEST(UnitNamesTest, DaysAreHeard) {
+  const std::string message = SaysOfTimes(
+      [](int s, int tenths) { return fmt::format("{:.9f}", 45000 + (s + 0.1 * tenths) / 86400); });
+  EXPECT_NE(message.find("it looks like days: put 'units: {time_s: 86400}' into"), std::string::npos)
+      << message;
 }
 
 TEST(UnitNamesTest, NamesThatMerelyHaveSuchLettersAreTaken) {
