@@ -84,6 +84,7 @@ void CheckParts(const std::vector<Part>& parts, const FlightLog* evaluated,
                 const std::vector<double>& zero_s) {
   const std::vector<Sample> samples = SamplesOf(parts, zero_s);
   std::vector<double> half_steps_s;
+  half_steps_s.reserve(parts.size());
   for (const Part& part : parts) half_steps_s.push_back(HalfStepS(*part.flight));
   std::vector<std::size_t> shared(parts.size(), 0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -136,6 +137,7 @@ void CheckNoFlightTwice(const FlightLog& fitted, const FlightLog* evaluated) {
     for (const Flight& flight : evaluated->flights) parts.push_back({evaluated, &flight});
   const std::vector<double> as_recorded_s(parts.size(), 0.0);
   std::vector<double> first_rows_s;
+  first_rows_s.reserve(parts.size());
   for (const Part& part : parts) first_rows_s.push_back(part.flight->rows.front().time_s);
   CheckParts(parts, evaluated, as_recorded_s);
   CheckParts(parts, evaluated, first_rows_s);
