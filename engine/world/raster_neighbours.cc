@@ -73,12 +73,15 @@ bool IsNameSign(char c) {
 
 // What stands in the elements and keys of XML, JSON and WKT that are called so.
 std::vector<std::string> TextsCalledUnit(const std::string& text) {
-  constexpr std::size_t kLongest = 60;
+  constexpr std::size_t kLongest = 60, kLongestSystem = 400;
   const std::string lower = LowerCase(text);
-  const std::size_t vertical = lower.find("vertcs");  // of the lengths' unit others tell
+  const auto in_vertical_system = [&](std::size_t at) {  // others tell the unit of lengths
+    const std::size_t before = std::min(at, kLongestSystem);
+    return std::string_view(lower).substr(at - before, before).find("vertcs") != std::string_view::npos;
+  };
   std::vector<std::string> found;
-  for (std::size_t at = lower.find("unit"); at != std::string::npos; at = lower.find("unit", at + 1)) {
-    std::size_t begin = at, end = at;
+  for (std::size_t at = lower.find("unit"), end = 0; at != std::string::npos; at = lower.find("unit", end)) {
+    std::size_t begin = end = at;
     while (begin > 0 && IsNameSign(lower[begin - 1])) --begin;
     while (end < lower.size() && IsNameSign(lower[end])) ++end;
     if (begin == 0 || end == lower.size() ||
@@ -87,7 +90,7 @@ std::vector<std::string> TextsCalledUnit(const std::string& text) {
     std::size_t value = std::string::npos;
     if (lower[begin - 1] == '<') value = lower.find('>', end);
     if (lower[begin - 1] == '"' && lower[end] == '"') value = lower.find_first_not_of(" \t\r\n:[", end + 1);
-    if (lower[end] == '[' && at > vertical) value = end;
+    if (lower[end] == '[' && in_vertical_system(at)) value = end;
     if (value == std::string::npos) continue;
     const std::string_view rest = std::string_view(text).substr(value + 1, kLongest);
     found.emplace_back(
@@ -106,7 +109,9 @@ bool AreAlike(const std::filesystem::path& a, const std::filesystem::path& b) {
 bool IsCalledUnit(std::string_view name) {
   constexpr std::array<std::string_view, 5> kEnds = {"unit", "units", "unittype", "unitsymbol", "unitname"};
   const std::string lower = LowerCase(std::string(name));
-  return std::any_of(kEnds.begin(), kEnds.end(), [&](std::string_view end) { return lower.ends_with(end); });
+  const bool of_pixels = lower.find("resolution") != std::string::npos;  // for paper: pixels/inch
+  return !of_pixels &&
+         std::any_of(kEnds.begin(), kEnds.end(), [&](std::string_view end) { return lower.ends_with(end); });
 }
 
 RasterName NameWithNeighbours(const std::filesystem::path& file) {

@@ -23,7 +23,8 @@ RasterName NameWithNeighbours(const std::filesystem::path& file);
 // The mask beside it, whatever the case of its ending, or "".
 std::string MaskBeside(const std::filesystem::path& file);
 
-// Whether what is called so tells a unit: "altunits", "VERTICAL_UNIT", but not "community".
+// Whether what is called so tells a unit: "altunits", "VERTICAL_UNIT", but not "community", nor that of
+// TIFFTAG_RESOLUTIONUNIT.
 bool IsCalledUnit(std::string_view name);
 
 // What its metadata beside it, which GDAL does not read, says of units of length: what stands in elements or keys called

@@ -182,6 +182,7 @@ TEST_F(RasterNeighboursTest, AUnitAmongTheMetadataOfARasterIsAskedFor) {
               "'height_unit: ft', 'us-ft' or 'm' to terrain.grid");
     EXPECT_EQ(with("units=m", of_band), "44.00");
     EXPECT_EQ(with("community=Seven Mile", of_band), "44.00");
+    EXPECT_EQ(with("TIFFTAG_RESOLUTIONUNIT=2 (pixels/inch)", of_band), "44.00");
   }
 }
 
