@@ -28,6 +28,7 @@ struct Sample {
   double power_w, airspeed_mps, time_s;
   std::size_t part;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): it takes <=> for a pointer's
   auto operator<=>(const Sample&) const = default;
 };
 
