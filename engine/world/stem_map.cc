@@ -63,6 +63,7 @@ class StemMapBuilder {
     CheckPlaces();
     CheckSpots();
     FindBounds();  // a tree at the edge may have been left out
+    NoteWideStand();
     MoveToOrigin();
     NoteEstimates();
     if (!slenderness.empty()) map_.notes.push_back(slenderness);
@@ -178,6 +179,15 @@ class StemMapBuilder {
     const Stem& stem = *std::max_element(map_.stems.begin(), map_.stems.end(),
                                          [&](const Stem& a, const Stem& b) { return far(a) < far(b); });
     return fmt::format("farthest away is the tree at [{:.10g}, {:.10g}] m", stem.x_m, stem.y_m);
+  }
+
+  // One wrong place, and the stand is kilometres of nothing.
+  void NoteWideStand() {
+    constexpr double kSparseM2 = 1e4;
+    const double m2 = map_.size_m.x() * map_.size_m.y() / static_cast<double>(map_.stems.size());
+    if (m2 > kSparseM2)
+      map_.notes.push_back(fmt::format("stem map: one tree in {:.3g} ha of a stand of {:.0f} x {:.0f} m; {}",
+                                       m2 / kSparseM2, map_.size_m.x(), map_.size_m.y(), FarthestTree()));
   }
 
   void NoteEstimates() {

@@ -209,9 +209,12 @@ TEST(StemMapWorld, AForestWithoutATreeIsSaid) {
   const auto scene = Scene::Load(
       folder.Write("w.yaml", GridWorld("    file: flat.asc\n") + "forest:\n  stem_map: {file: stems.csv}\n"));
   EXPECT_TRUE(scene->Trees().empty());
-  EXPECT_EQ(scene->Notes(), std::vector<std::string>{"stem map: none of its 2 trees stands in this world "
-                                                     "(the stand's part of 2010 x 1520 m, laid over 100 x "
-                                                     "80 m; clearings, slope_max, min_height_m, keep)"});
+  const std::vector<std::string> notes = {
+      "stem map: one tree in 102 ha of a stand of 2010 x 1520 m; farthest away is the tree at [0, 0] m",
+      "stem map: none of its 2 trees stands in this world (the stand's part of 2010 x 1520 m, laid over 100 "
+      "x 80 m; "
+      "clearings, slope_max, min_height_m, keep)"};
+  EXPECT_EQ(scene->Notes(), notes);
 }
 
 }  // namespace

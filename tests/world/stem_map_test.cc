@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "engine/core/check.h"
 #include "tests/world/world_files.h"
@@ -143,6 +144,15 @@ TEST_F(StemMapTest, AMissingPlaceIsNoPlace) {
     EXPECT_EQ(Message(kHeader + kRows + mark + ",9,20,15,8,2\n"),
               fmt::format("stems.csv:4:1: x_m: '{}' is missing; measure it or leave the tree out", mark));
   EXPECT_EQ(Read(kHeader + kRows + "-99,9,20,15,8,2\n-12,9,20,15,8,2\n").size_m, Eigen::Vector2d(162, 50));
+}
+
+// Was 3 km of nothing, without a word.
+TEST_F(StemMapTest, AStandThatIsMostlyEmptyIsSaid) {
+  EXPECT_TRUE(Read(kHeader + kRows).notes.empty());
+  EXPECT_EQ(Read(kHeader + kRows + "9,5057,30,21.5,9,2.5\n12,12,30,21.5,9,2.5\n").notes,
+            std::vector<std::string>{
+                "stem map: one tree in 7.58 ha of a stand of 60 x 5050 m; farthest away is the "
+                "tree at [9, 5057] m"});
 }
 
 TEST_F(StemMapTest, AColumnHasOneMeaning) {
