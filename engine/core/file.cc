@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/core/check.h"
+#include "engine/core/remove_file.h"
 #include "engine/core/temporary.h"
 
 namespace ed3r {
@@ -58,13 +59,18 @@ int OpenToRead(const std::string& path) {
 
 constexpr std::time_t kForgotten_s = 24 * 60 * 60;
 
-// Whether nobody writes it any more. `here`: it is of this machine, whose locks can be asked.
-bool IsLeftover(const fs::path& path, bool here) {
-  const Descriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+// Where nobody writes it any more; true where it is gone. `here`: it is of this machine, whose locks can be asked.
+bool RemoveLeftover(const fs::path& path, bool here) {
+  const bool folder = path.extension() == kTemporaryFolder;
+  const Descriptor file(
+      ::open(path.c_str(), (folder ? O_RDONLY | O_DIRECTORY : O_RDWR | O_NONBLOCK) | O_CLOEXEC | O_NOFOLLOW));
   struct stat found = {};
-  if (file.number() < 0 || ::fstat(file.number(), &found) != 0 || !S_ISREG(found.st_mode)) return false;
+  if (file.number() < 0 || ::fstat(file.number(), &found) != 0) return false;
+  if (folder ? found.st_uid != ::geteuid() : !S_ISREG(found.st_mode)) return false;
   if (!here && std::time(nullptr) - found.st_mtime < kForgotten_s) return false;
-  return ::flock(file.number(), LOCK_EX | LOCK_NB) == 0;
+  if (::flock(file.number(), LOCK_EX | LOCK_NB) != 0) return false;
+  std::error_code error;
+  return folder ? fs::remove_all(path, error) > 0 && !error : ::unlink(path.c_str()) == 0;
 }
 
 // The new name itself must survive a crash. A file system that cannot sync a directory is no reason to fail.
@@ -160,10 +166,14 @@ void AtomicFile::Flush() {
   buffer_.clear();
 }
 
-void AtomicFile::Commit() {
+void AtomicFile::Sync() {
   ED3R_CHECK(descriptor_ >= 0, path_.string());
   Flush();
   if (::fsync(descriptor_) != 0 && errno != EINVAL) Fail(errno);
+}
+
+void AtomicFile::Commit() {
+  Sync();
   // Closed by hand: some file systems tell of a failed write only here.
   const int closed = ::close(descriptor_);
   int error = closed != 0 ? errno : 0;
@@ -173,6 +183,17 @@ void AtomicFile::Commit() {
   KeepOnSignal(temporary_);
   if (error != 0) Fail(error);
   SyncFolderOf(path_);
+}
+
+AtomicFile& FileSet::Add(const fs::path& path) {
+  return *files_.emplace_back(std::make_unique<AtomicFile>(path));
+}
+
+void FileSet::Commit() {
+  for (const auto& file : files_) file->Sync();  // a full disk is told while the old ones are there
+  for (auto file = files_.rbegin(); file != files_.rend(); ++file) RemoveFile((*file)->path());
+  for (const auto& file : files_) SyncFolderOf(file->path());
+  for (const auto& file : files_) file->Commit();
 }
 
 void WriteFile(const fs::path& path, std::string_view content) {
@@ -197,7 +218,7 @@ int RemoveLeftovers(const fs::path& folder) {
     if (IsTemporaryName(entry->path().filename().string())) found.push_back(entry->path());
   int removed = 0;
   for (const fs::path& path : found)
-    if (IsLeftover(path, IsNamedHere(path.filename().string())) && ::unlink(path.c_str()) == 0) ++removed;
+    if (RemoveLeftover(path, IsNamedHere(path.filename().string()))) ++removed;
   return removed;
 }
 

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,7 +37,9 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void Write(std::string_view bytes);
+  void Sync();    // what was written is on the disk, under its hidden name
   void Commit();  // the last call; syncs the file, renames it, syncs its folder
+  const std::filesystem::path& path() const { return path_; }
 
  private:
   void Flush();
@@ -45,6 +48,20 @@ class AtomicFile {
   std::filesystem::path path_, temporary_;
   std::string buffer_;
   int descriptor_ = -1;
+};
+
+// Files that belong together: whoever looks finds all that were there before, or all new ones, or that some are missing, but
+// never files of two sets, also after a crash. Unless committed, nothing is changed.
+class FileSet {
+ public:
+  // Lives as long as the set, which commits it.
+  AtomicFile& Add(const std::filesystem::path& path);
+  void Add(const std::filesystem::path& path, std::string_view content) { Add(path).Write(content); }
+  // The last call; the files appear in the order in which they were added.
+  void Commit();
+
+ private:
+  std::vector<std::unique_ptr<AtomicFile>> files_;
 };
 
 // "where: cannot be written: why", of an errno: std::system_error where the system has failed (a full disk), else UserError.
@@ -57,8 +74,8 @@ void WriteFile(const std::filesystem::path& path, std::string_view content);
 void CheckNoInput(const std::filesystem::path& output, const std::vector<std::string>& inputs,
                   std::string_view option);
 
-// Removes the temporary files (core/temporary.h) that killed processes left in this folder: files of such names, that no process
-// of this machine has open, or that another machine has not touched for a day. Errors are passed over: nothing depends on
+// Removes the temporary files and folders (core/temporary.h) that killed processes left in this folder: those of such names, that
+// no process of this machine has open, or that another machine has not touched for a day. Errors are passed over: nothing depends on
 // it. Returns how many there were.
 int RemoveLeftovers(const std::filesystem::path& folder);
 

@@ -3,7 +3,6 @@
 #include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -13,11 +12,13 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <functional>
 #include <random>
 #include <string>
 #include <system_error>
 
 #include "engine/core/check.h"
+#include "engine/core/file.h"
 
 namespace ed3r {
 namespace {
@@ -59,6 +60,29 @@ void RemoveTree(int parent, const char* name, int deepest) {
   ::unlinkat(parent, name, AT_REMOVEDIR);
 }
 
+// `make` opens what it has made, or -1 with errno.
+int MakeLocked(const fs::path& folder, std::string_view end, fs::path& made,
+               const std::function<int()>& make) {
+  constexpr int kAttempts = 100;
+  std::random_device random;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    made = folder / fmt::format("{}{:08x}{:08x}{}", Prefix(), random(), random(), end);
+    const int file = make();
+    if (file < 0 && errno == EEXIST) continue;
+    if (file < 0) return -1;
+    // A file system without such locks refuses them to both.
+    const bool taken = ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    struct stat found = {};
+    if (!taken && (::fstat(file, &found) != 0 || found.st_nlink > 0)) {
+      RemoveOnSignal(made);
+      return file;
+    }
+    ::close(file);  // taken for a leftover in between
+  }
+  errno = EEXIST;
+  return -1;
+}
+
 }  // namespace
 
 void RemoveOnSignal(const fs::path& path) {
@@ -87,31 +111,17 @@ void RemoveTemporaries() {
 }
 
 int MakeTemporaryFile(const fs::path& folder, std::string_view end, fs::path& made) {
-  constexpr int kAttempts = 100;
-  std::random_device random;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    made = folder / fmt::format("{}{:08x}{:08x}{}", Prefix(), random(), random(), end);
-    const int file = ::open(made.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (file < 0 && errno == EEXIST) continue;
-    if (file < 0) return -1;
-    // A file system without such locks refuses them to both.
-    ::flock(file, LOCK_EX | LOCK_NB);
-    struct stat found = {};
-    if (::fstat(file, &found) != 0 || found.st_nlink > 0) {
-      RemoveOnSignal(made);
-      return file;
-    }
-    ::close(file);  // taken for a leftover in between
-  }
-  errno = EEXIST;
-  return -1;
+  return MakeLocked(folder, end, made, [&made] {
+    return ::open(made.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  });
 }
 
 bool IsTemporaryName(std::string_view name) {
   const std::size_t digits = kMachineDigits + 1 + kRandomDigits;
-  static_assert(kTemporaryEnd.size() == kTemporaryFilm.size());
+  static_assert(kTemporaryEnd.size() == kTemporaryFilm.size() &&
+                kTemporaryEnd.size() == kTemporaryFolder.size());
   if (name.size() != kBegin.size() + digits + kTemporaryEnd.size() || !name.starts_with(kBegin) ||
-      !(name.ends_with(kTemporaryEnd) || name.ends_with(kTemporaryFilm)))
+      !(name.ends_with(kTemporaryEnd) || name.ends_with(kTemporaryFilm) || name.ends_with(kTemporaryFolder)))
     return false;
   for (std::size_t i = 0; i < digits; ++i) {
     const char c = name[kBegin.size() + i];
@@ -123,17 +133,19 @@ bool IsTemporaryName(std::string_view name) {
 
 bool IsNamedHere(std::string_view name) { return name.starts_with(Prefix()); }
 
-TemporaryFolder::TemporaryFolder(const fs::path& parent, std::string_view begin) {
-  std::string pattern = (parent / fmt::format("{}XXXXXX", begin)).string();
-  if (mkdtemp(pattern.data()) == nullptr)
-    throw UserError(fmt::format("{}: cannot be made: {}", pattern, std::strerror(errno)));
-  path_ = pattern;
-  RemoveOnSignal(path_);
+TemporaryFolder::TemporaryFolder(const fs::path& parent) {
+  RemoveLeftovers(parent);
+  descriptor_ = MakeLocked(parent, kTemporaryFolder, path_, [this] {
+    return ::mkdir(path_.c_str(), 0700) == 0 ? ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+  });
+  if (descriptor_ < 0)
+    throw UserError(fmt::format("{}: cannot be made: {}", path_.string(), std::strerror(errno)));
 }
 
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
+  ::close(descriptor_);
   KeepOnSignal(path_);
 }
 

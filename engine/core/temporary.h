@@ -9,7 +9,7 @@
 
 namespace ed3r {
 
-inline constexpr std::string_view kTemporaryEnd = ".tmp", kTemporaryFilm = ".mp4";
+inline constexpr std::string_view kTemporaryEnd = ".tmp", kTemporaryFilm = ".mp4", kTemporaryFolder = ".dir";
 
 // From now on a signal takes it away, a folder with all that is in it.
 void RemoveOnSignal(const std::filesystem::path& path);
@@ -26,11 +26,12 @@ bool IsTemporaryName(std::string_view name);
 // Of this machine, whose locks can be asked.
 bool IsNamedHere(std::string_view name);
 
-// A folder that is removed with its object.
+// A folder that is removed with its object, named and locked as such a file is. Those that killed processes left beside it are
+// taken away.
 class TemporaryFolder {
  public:
-  // "parent/beginXXXXXX". UserError where it cannot be made.
-  TemporaryFolder(const std::filesystem::path& parent, std::string_view begin);
+  // UserError where it cannot be made.
+  explicit TemporaryFolder(const std::filesystem::path& parent);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -38,6 +39,7 @@ class TemporaryFolder {
 
  private:
   std::filesystem::path path_;
+  int descriptor_ = -1;
 };
 
 }  // namespace ed3r

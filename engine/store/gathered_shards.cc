@@ -159,7 +159,7 @@ GatheredShards::GatheredShards(const std::string& run_dir) : dir_(run_dir) {
   notes_ = std::move(found.notes);
   const std::vector<std::string>& stores = found.dirs;
   if (stores.empty() || (stores.size() == 1 && stores.front() == run_dir)) return;
-  temporary_.emplace(fs::temp_directory_path(), "ed3r-shards-");
+  temporary_.emplace(fs::temp_directory_path());
   dir_ = (temporary_->path() / "run").string();
   MergeStores(dir_, stores);
 }

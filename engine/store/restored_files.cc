@@ -38,7 +38,7 @@ RestoredFiles::RestoredFiles(ResultReader& reader)
   for (const InputFile& file : files)
     if (!file.content && too_large_.empty()) too_large_ = file.name;
   if (files.empty() || !too_large_.empty()) return;
-  folder_.emplace(fs::temp_directory_path(), "ed3r-files-");
+  folder_.emplace(fs::temp_directory_path());
   for (const InputFile& file : files) {
     if (LeadsOut(file.name))
       throw UserError(fmt::format("{}: the file is damaged: it keeps a file called '{}'", dir_, file.name));

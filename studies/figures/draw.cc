@@ -75,7 +75,7 @@ DrawResult DrawFigures(const std::string& folder, const std::string& script_name
     return {Drawing::kUnavailable,
             fmt::format("{} is not there; set ED3R_SCRIPTS to its folder", script.string())};
   // Scripts write by name and through links; here nobody else has put any.
-  const TemporaryFolder work(folder, ".drawing-");
+  const TemporaryFolder work(folder);
   for (const char* data : {"data.json", "fit.json", "rows.csv", "flights.csv"})
     if (const fs::path file = fs::path(folder) / data; fs::is_regular_file(file))
       fs::copy_file(file, work.path() / data);

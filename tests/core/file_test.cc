@@ -1,6 +1,7 @@
 #include "engine/core/file.h"
 
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -88,6 +89,46 @@ TEST_F(FileTest, AFileIsReplacedWholeOrNotAtAll) {
   EXPECT_EQ(Entries(), 1);
 }
 
+// What whoever looks may see, in the order of events: all old ones are gone before the first new one is there.
+TEST_F(FileTest, FilesThatBelongTogetherAreNeverOfTwoSets) {
+  WriteFile(folder_ / "a", "old");
+  WriteFile(folder_ / "b", "old");
+  const int watch = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+  ASSERT_GE(inotify_add_watch(watch, folder_.c_str(), IN_DELETE | IN_MOVED_TO), 0);
+  {
+    FileSet files;
+    files.Add(folder_ / "a", "new a");
+    AtomicFile& b = files.Add(folder_ / "b");
+    b.Write("new b");
+    EXPECT_EQ(Content(folder_ / "a"), "old");
+    files.Commit();
+  }
+  alignas(inotify_event) char bytes[4096];
+  const ssize_t size = read(watch, bytes, sizeof bytes);
+  std::string seen;
+  for (ssize_t at = 0; at < size;) {
+    const auto* event = reinterpret_cast<const inotify_event*>(bytes + at);
+    seen += std::string(event->mask & IN_DELETE ? "-" : "+") + event->name + " ";
+    at += static_cast<ssize_t>(sizeof *event + event->len);
+  }
+  close(watch);
+  EXPECT_EQ(seen, "-b -a +a +b ");
+  EXPECT_EQ(Content(folder_ / "a") + ", " + Content(folder_ / "b"), "new a, new b");
+}
+
+TEST_F(FileTest, FilesThatBelongTogetherAreKeptWhereOneOfTheNewCannotBe) {
+  WriteFile(folder_ / "a", "old");
+  fs::create_directory(folder_ / "b");
+  EXPECT_EQ(Refusal([&] {
+              FileSet files;
+              files.Add(folder_ / "a", "new");
+              files.Add(folder_ / "b", "new");
+            }),
+            "b: cannot be written: Is a directory");
+  EXPECT_EQ(Content(folder_ / "a"), "old");
+  EXPECT_EQ(Entries(), 2);
+}
+
 TEST_F(FileTest, ALinkIsReplacedAndItsTargetStays) {
   WriteFile(folder_ / "victim", "mine");
   fs::create_symlink(folder_ / "victim", folder_ / "x");
@@ -150,6 +191,24 @@ TEST_F(FileTest, AFolderThatIsToBeWrittenIsRidOfWhatKilledProcessesLeft) {
   EXPECT_EQ(Entries(), 1);
   EXPECT_TRUE(fs::exists(held)) << "somebody writes it";
   close(descriptor);
+}
+
+TEST_F(FileTest, AFolderThatAKilledProcessLeftGoesWithTheNextOne) {
+  if (const pid_t child = fork(); child == 0) {
+    const TemporaryFolder left(folder_);
+    WriteFile(left.path() / "x", "half");
+    fs::create_directory_symlink(folder_, left.path() / "out");
+    std::raise(SIGKILL);
+  } else {
+    waitpid(child, nullptr, 0);
+  }
+  EXPECT_EQ(Entries(), 1);
+  WriteFile(folder_ / "mine", "kept");
+  const TemporaryFolder first(folder_);
+  WriteFile(first.path() / "x", "1");
+  const TemporaryFolder second(folder_);
+  EXPECT_EQ(Entries(), 3) << "mine, and two that are used";
+  EXPECT_EQ(Content(first.path() / "x"), "1");
 }
 
 TEST_F(FileTest, WhatAnotherMachineLeftIsRemovedAfterADay) {

@@ -61,7 +61,7 @@ TEST(InterruptTest, ASignalThatEndsTheProcessTakesWhatIsTemporary) {
         AtomicFile whole(scratch / "whole");
         whole.Write("all of it");
         whole.Commit();
-        const TemporaryFolder files(scratch, "files-");
+        const TemporaryFolder files(scratch);
         fs::create_directories(files.path() / "a" / "b");
         WriteFile(files.path() / "x", "1");
         WriteFile(files.path() / "a" / "b" / "y", "2");
