@@ -141,10 +141,12 @@ void WriteFolder(const std::string& text, const std::vector<report::ComparedRun>
   MakeFolder(out);
   const auto alone = store::LockToWrite(out.string());
   RemoveFile(out / "index.html");  // it comes last: where it is, all is of its runs
-  WriteFile(out / "compare.txt", text);
-  WriteFile(out / "differences.csv", variants::DifferenceCsv(study));
-  WriteFile(out / "verdicts.csv", variants::VariantVerdictCsv(study));
-  WriteFile(out / "manifest.json", ManifestOf(runs).dump(2) + "\n");
+  FileSet files;
+  files.Add(out / "compare.txt", text);
+  files.Add(out / "differences.csv", variants::DifferenceCsv(study));
+  files.Add(out / "verdicts.csv", variants::VariantVerdictCsv(study));
+  files.Add(out / "manifest.json", ManifestOf(runs).dump(2) + "\n");
+  files.Commit();
   WritePage(runs, study, notes, options);
 }
 

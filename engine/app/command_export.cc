@@ -7,6 +7,8 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "engine/app/commands.h"
 #include "engine/app/words.h"
@@ -15,6 +17,7 @@
 #include "engine/core/file.h"
 #include "engine/core/new_folder.h"
 #include "engine/core/parse_number.h"
+#include "engine/core/remove_file.h"
 #include "engine/rfnn/model_file.h"
 #include "engine/rfnn/onnx_network.h"
 #include "engine/store/directory_lock.h"
@@ -66,8 +69,8 @@ std::string TrainingSeed(const sweep::WrittenPlan::Arm& arm, const store::Networ
 
 // Networks of one name part by their hash alone: a row for each arm that flew one says which it is. `network` is the column of
 // that name in missions.csv.
-void WriteNetworkIndex(store::ResultReader& reader, const store::FlownNetworks& flown,
-                       const std::map<std::string, std::string>& names, const std::filesystem::path& path) {
+std::string NetworkIndex(store::ResultReader& reader, const store::FlownNetworks& flown,
+                         const std::map<std::string, std::string>& names) {
   const sweep::WrittenPlan plan = sweep::ReadPlanText(reader.StoredRecipe().plan_text);
   std::string csv = "file,agent,training_seed,stage,arm,network,sha256\n";
   for (const store::NetworkUse& use : flown.uses) {
@@ -77,27 +80,48 @@ void WriteNetworkIndex(store::ResultReader& reader, const store::FlownNetworks& 
         fmt::format("{},{},{},{},{},{},{}\n", CsvField(names.at(use.sha256)), use.agent,
                     TrainingSeed(arm, use), CsvField(stage.name), CsvField(arm.name), use.seed, use.sha256);
   }
-  WriteFile(path, csv);
-  fmt::print("{}: {}: which arm flew which of them\n", path.string(),
-             Counted(static_cast<std::int64_t>(flown.uses.size()), "row"));
+  return csv;
 }
 
-void ExportNetworks(store::ResultReader& reader, const std::string& dir,
-                    const std::filesystem::path& folder) {
+// The networks of a run as files. There may be more of them than a process may have open, so that the index tells whether they
+// are whole: it is gone before the first is written, and comes last.
+struct ExportedNetworks {
+  std::filesystem::path index;
+  std::string index_text;
+  std::int64_t rows = 0;
+  std::vector<std::pair<std::filesystem::path, std::string>> files;
+  std::vector<std::string> names;  // for people
+
+  void Write() const {
+    RemoveFile(index);
+    for (const auto& [path, bytes] : files) WriteFile(path, bytes);
+  }
+  void Tell() const {
+    for (std::size_t i = 0; i < files.size(); ++i) fmt::print("{}: {}\n", files[i].first.string(), names[i]);
+    fmt::print("{}: {}: which arm flew which of them\n", index.string(), Counted(rows, "row"));
+  }
+};
+
+ExportedNetworks NetworksOf(store::ResultReader& reader, const std::string& dir,
+                            const std::filesystem::path& folder) {
   const store::FlownNetworks flown = reader.Networks();
   if (flown.files.empty()) throw UserError(fmt::format("{}: --networks: no trained network flew here", dir));
   const std::map<std::string, std::string> names = FileNames(flown);
+  ExportedNetworks exported{folder / "networks.csv",
+                            NetworkIndex(reader, flown, names),
+                            static_cast<std::int64_t>(flown.uses.size()),
+                            {},
+                            {}};
   std::set<std::string> done;
   for (const store::NetworkUse& use : flown.uses) {
     if (!done.insert(use.sha256).second) continue;
     const store::NetworkFile& file = flown.files.at(use.sha256);
     const rfnn::Model model = rfnn::OpenModel(file.model, fmt::format("{}: network '{}'", dir, file.name),
                                               use.agent == "rc" ? rfnn::kRcNetwork : rfnn::kRobotNetwork);
-    const std::filesystem::path path = folder / names.at(use.sha256);
-    WriteFile(path, rfnn::OnnxBytes(model));
-    fmt::print("{}: {}\n", path.string(), file.name);
+    exported.files.emplace_back(folder / names.at(use.sha256), rfnn::OnnxBytes(model));
+    exported.names.push_back(file.name);
   }
-  WriteNetworkIndex(reader, flown, names, folder / "networks.csv");
+  return exported;
 }
 
 int Export(const Options& options) {
@@ -109,13 +133,24 @@ int Export(const Options& options) {
                                                            : std::filesystem::path(options.out);
   const NewFolder made(folder);  // a damaged run is refused below
   const auto alone = store::LockToWrite(folder.string());
-  const auto tables = [&](exports::ExportFormat format) {
-    for (const exports::ExportedTable& table : exports::ExportTables(reader, format, folder))
-      fmt::print("{}: {}\n", table.file.string(), Counted(table.rows, "row"));
+  FileSet files;
+  std::vector<exports::ExportedTable> tables;
+  const auto write_tables = [&](exports::ExportFormat format) {
+    for (exports::ExportedTable& table : exports::ExportTables(reader, format, folder, files))
+      tables.push_back(std::move(table));
   };
-  if (options.csv) tables(exports::ExportFormat::kCsv);
-  if (options.numpy) tables(exports::ExportFormat::kNumpy);
-  if (options.networks) ExportNetworks(reader, options.dir, folder);
+  if (options.csv) write_tables(exports::ExportFormat::kCsv);
+  if (options.numpy) write_tables(exports::ExportFormat::kNumpy);
+  std::optional<ExportedNetworks> networks;
+  if (options.networks) networks = NetworksOf(reader, options.dir, folder);
+  if (networks) {
+    files.Add(networks->index, networks->index_text);
+    networks->Write();
+  }
+  files.Commit();
+  for (const exports::ExportedTable& table : tables)
+    fmt::print("{}: {}\n", table.file.string(), Counted(table.rows, "row"));
+  if (networks) networks->Tell();
   FlushOutput();
   TellNotes(run.notes());
   if (!options.csv && !options.numpy) return kDone;

@@ -49,9 +49,11 @@ int FitPerception(const Options& options) {
     const std::filesystem::path folder(options.out);
     MakeFolder(folder);
     const auto alone = store::LockToWrite(folder.string());
-    WriteFile(folder / "perception.yaml", perception_fit::ProfileFitYaml(fit, options.perception));
-    WriteFile(folder / "perception.json", perception_fit::ProfileFitJson(fit).dump(2) + "\n");
-    WriteFile(folder / "looks.csv", perception_fit::LooksCsv(found.looks, fit));
+    FileSet files;
+    files.Add(folder / "perception.yaml", perception_fit::ProfileFitYaml(fit, options.perception));
+    files.Add(folder / "perception.json", perception_fit::ProfileFitJson(fit).dump(2) + "\n");
+    files.Add(folder / "looks.csv", perception_fit::LooksCsv(found.looks, fit));
+    files.Commit();
   }
   fmt::print("{}\n", options.json ? perception_fit::ProfileFitJson(fit).dump(2)
                                   : perception_fit::ProfileFitText(fit));

@@ -71,7 +71,7 @@ void CheckCount(const char* option, int value, int min, int max) {
 // The frames as one NumPy array (NPY 1.0, uint8, N x H x W x 3, C order), written as they come.
 class FrameFile {
  public:
-  FrameFile(const fs::path& path, int frames, perception::PictureSize size) : file_(path) {
+  FrameFile(AtomicFile& file, int frames, perception::PictureSize size) : file_(file) {
     std::string header = fmt::format("{{'descr': '|u1', 'fortran_order': False, 'shape': ({}, {}, {}, 3), }}",
                                      frames, size.height_px, size.width_px);
     // Magic, version and length take 10 bytes; the data begin at a multiple of 64.
@@ -84,18 +84,15 @@ class FrameFile {
     Write(header.data(), header.size());
   }
   void Append(const perception::FrameStack& stack) { Write(stack.rgb.data(), stack.rgb.size()); }
-  // SHA-256 of the whole file.
-  std::string Close() {
-    file_.Commit();
-    return hash_.Hex();
-  }
+  // The last call; SHA-256 of the whole file.
+  std::string Hash() { return hash_.Hex(); }
 
  private:
   void Write(const void* data, std::size_t bytes) {
     file_.Write({static_cast<const char*>(data), bytes});
     hash_.Update(data, bytes);
   }
-  AtomicFile file_;
+  AtomicFile& file_;
   Sha256 hash_;
 };
 
@@ -141,7 +138,8 @@ class DataSet {
     const fs::path out(options_.out);
     const NewFolder made(out);
     const auto alone = store::LockToWrite(out.string());
-    FrameFile frames(out / "frames.npy", options_.views * options_.frames, size_);
+    FileSet files;
+    FrameFile frames(files.Add(out / "frames.npy"), options_.views * options_.frames, size_);
     std::string labels =
         "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label,tilt_deg,"
         "haze_range_m,sun_deg,cloud_cover,distractors\n";
@@ -152,15 +150,14 @@ class DataSet {
             fmt::format("--wrong-by: of {} views only {} are wrong by {}", looks, kept, options_.wrong_by));
       if (WriteView(looks, kept, frames, labels)) ++kept;
     }
-    // Of an interrupted overwriting nothing can be read: labels are missing, or the manifest is of the set before.
-    RemoveFile(out / "labels.csv");
-    RemovePictures(out);
-    for (const int view : pictured_) WritePictures(view);
-    const std::string of_frames = frames.Close();
-    WriteFile(out / "labels.csv", labels);
     Sha256 of_labels;
     of_labels.Update(labels);
-    WriteManifest(out, looks, of_frames, of_labels.Hex());
+    files.Add(out / "labels.csv", labels);
+    files.Add(out / "manifest.json", Manifest(looks, frames.Hash(), of_labels.Hex()));
+    RemoveFile(out / "manifest.json");  // it comes last: where it is, all is of its set
+    RemovePictures(out);
+    for (const int view : pictured_) WritePictures(view);
+    files.Commit();
     fmt::print(
         "{}: frames.npy ({} views x {} frames, {} x {} px), labels.csv, manifest.json; fire or smoke in {} "
         "views\n",
@@ -226,8 +223,7 @@ class DataSet {
     perception::WriteFrame(renderer.Sense(plan.pose, 1, first, kLarge).frames, 0, stem + "_large.png");
   }
 
-  void WriteManifest(const fs::path& out, int looks, const std::string& of_frames,
-                     const std::string& of_labels) const {
+  std::string Manifest(int looks, const std::string& of_frames, const std::string& of_labels) const {
     nlohmann::ordered_json manifest;
     manifest["seed"] = options_.seed;
     manifest["views"] = options_.views;
@@ -249,7 +245,7 @@ class DataSet {
     manifest["code"] = {{"source_hash", code.source_hash}, {"commit", code.commit}, {"dirty", code.dirty}};
     manifest["frames_npy_sha256"] = of_frames;
     manifest["labels_csv_sha256"] = of_labels;
-    WriteFile(out / "manifest.json", manifest.dump(2) + "\n");
+    return manifest.dump(2) + "\n";
   }
 
   const Options& options_;

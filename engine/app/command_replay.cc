@@ -13,6 +13,7 @@
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/file.h"
+#include "engine/core/remove_file.h"
 #include "engine/world/map_picture.h"
 #include "studies/metrics/number_text.h"
 #include "studies/report/web_page.h"
@@ -31,7 +32,7 @@ struct Options {
 class TraceFile : public robot::TraceSink {
  public:
   // `also` hears the same; none: nullptr.
-  TraceFile(const std::filesystem::path& path, robot::TraceSink* also) : file_(path), also_(also) {
+  TraceFile(AtomicFile& file, robot::TraceSink* also) : file_(file), also_(also) {
     file_.Write("timestep,time_s,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps,yaw_rad\n");
   }
   void Record(const robot::TraceSample& s) override {
@@ -40,10 +41,9 @@ class TraceFile : public robot::TraceSink {
                             s.velocity_mps.z(), s.yaw_rad));
     if (also_ != nullptr) also_->Record(s);
   }
-  void Commit() { file_.Commit(); }
 
  private:
-  AtomicFile file_;
+  AtomicFile& file_;
   robot::TraceSink* also_;
 };
 
@@ -54,7 +54,7 @@ std::string CellOf(std::string_view column, std::int64_t value) {
   return name.empty() ? fmt::format("{}", value) : std::string(name);
 }
 
-void WriteSteps(const mission::MissionRecord& record, const std::filesystem::path& path) {
+std::string StepsText(const mission::MissionRecord& record) {
   std::string file;
   char separator = '\0';
   const mission::TimestepRecord columns;
@@ -71,7 +71,27 @@ void WriteSteps(const mission::MissionRecord& record, const std::filesystem::pat
       separator = ',';
     });
   }
-  WriteFile(path, file + "\n");
+  return file + "\n";
+}
+
+// "step003_frames.png", "step003_large.png"
+bool IsStepPicture(std::string_view name) {
+  constexpr std::string_view kBegin = "step";
+  const std::size_t end = name.find('_');
+  if (!name.starts_with(kBegin) || end == std::string_view::npos || end < kBegin.size() + 3) return false;
+  const std::string_view number = name.substr(kBegin.size(), end - kBegin.size()), rest = name.substr(end);
+  return number.find_first_not_of("0123456789") == std::string_view::npos &&
+         (rest == "_frames.png" || rest == "_large.png");
+}
+
+// Of another mission, they would be taken for this one's.
+void RemoveReplay(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (IsStepPicture(entry.path().filename().string())) found.push_back(entry.path());
+  for (const char* name : {"timesteps.csv", "trace.csv", "map.png", "mission.html"})
+    found.push_back(folder / name);
+  for (const std::filesystem::path& path : found) RemoveFile(path);
 }
 
 void CheckFrames(const std::vector<int>& frames, std::int64_t timesteps) {
@@ -132,12 +152,16 @@ int Replay(const Options& options) {
   if (!options.video.empty()) film.emplace(task, options.video);
   MakeFolder(out);
 
-  TraceFile trace(out / "trace.csv", film ? &*film : nullptr);
+  FileSet files;
+  TraceFile trace(files.Add(out / "trace.csv"), film ? &*film : nullptr);
   task.trace = &trace;
   const mission::MissionRecord flown = mission::FlyMission(task);
   const bool identical = run.Reader().IsStored(flown, stored);
-  trace.Commit();
-  WriteSteps(flown, out / "timesteps.csv");
+  const std::string steps = StepsText(flown);
+  files.Add(out / "timesteps.csv", steps);
+  std::string there, ignored;
+  if (!TryReadFile((out / "timesteps.csv").string(), kMaxTextBytes, there, ignored) || there != steps)
+    RemoveReplay(out);
   std::vector<Eigen::Vector3d> path_m = {{flown.start_x_m, flown.start_y_m, flown.start_z_m}};
   for (const mission::TimestepRecord& step : flown.steps) path_m.emplace_back(step.x_m, step.y_m, step.z_m);
   world::WriteMapPicture(task.scene, (out / "map.png").string(),
@@ -146,6 +170,7 @@ int Replay(const Options& options) {
     if (k <= flown.timesteps)  // a flight that differs may be shorter
       fmt::print("{}", pictures->Write(flown, k, (out / fmt::format("step{:03}", k)).string()));
   if (viewer) WriteViewer(run, options, task.scene, *viewer, out / "mission.html");
+  files.Commit();  // last: where timesteps.csv is, all is of its mission
   if (film) fmt::print("{}", film->Write(flown, options.mission + " of " + run.Plan().name));
   fmt::print("{}: {} in {}, {:.1f} s, {:.2f} kJ; {}\n", options.mission,
              NameOf(static_cast<mission::Outcome>(flown.outcome)), Counted(flown.timesteps, "timestep"),

@@ -118,13 +118,17 @@ void Write(const std::vector<schedule::BatchFile>& files, const fs::path& folder
         path.string(), (folder / "submit.sh").string()));
   }
   MakeFolder(folder / "logs");
-  for (const schedule::BatchFile& file : files) {
-    WriteFile(folder / file.name, file.content);
+  FileSet changed;  // a task that begins just now finds all the others
+  for (const schedule::BatchFile& file : files)
+    if (const fs::path path = folder / file.name;
+        !fs::exists(path) || ReadFile(path.string()) != file.content)
+      changed.Add(path, file.content);
+  changed.Commit();
+  for (const schedule::BatchFile& file : files)
     if (file.executable)
       fs::permissions(folder / file.name,
                       fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
                       fs::perm_options::add);
-  }
 }
 
 // The scripts fly what they were written for, whatever is asked for now; "" where that is the same.

@@ -14,7 +14,6 @@
 #include "engine/core/check.h"
 #include "engine/core/csv_table.h"
 #include "engine/core/file.h"
-#include "engine/core/new_folder.h"
 #include "engine/store/columns.h"
 #include "engine/store/words.h"
 
@@ -41,12 +40,11 @@ class TableFile {
   virtual void Integer(std::int64_t value) = 0;
   virtual void Real(double value) = 0;
   virtual void EndRow() = 0;
-  virtual void Commit() = 0;
 };
 
 class CsvFile : public TableFile {
  public:
-  CsvFile(const std::filesystem::path& path, const std::vector<store::Column>& columns) : file_(path) {
+  CsvFile(AtomicFile& file, const std::vector<store::Column>& columns) : file_(file) {
     for (const store::Column& column : columns) Word(column.name);
     EndRow();
   }
@@ -58,7 +56,6 @@ class CsvFile : public TableFile {
     row_.clear();
     first_ = true;
   }
-  void Commit() override { file_.Commit(); }
 
  private:
   void Field(std::string_view text) {
@@ -67,7 +64,7 @@ class CsvFile : public TableFile {
     row_ += text;
   }
 
-  AtomicFile file_;
+  AtomicFile& file_;
   std::string row_;
   bool first_ = true;
 };
@@ -76,9 +73,8 @@ class CsvFile : public TableFile {
 class NumpyFile : public TableFile {
  public:
   // `width`: characters of a word.
-  NumpyFile(const std::filesystem::path& path, const std::vector<store::Column>& columns, std::int64_t rows,
-            std::size_t width)
-      : file_(path), width_(width) {
+  NumpyFile(AtomicFile& file, const std::vector<store::Column>& columns, std::int64_t rows, std::size_t width)
+      : file_(file), width_(width) {
     std::string fields;
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const bool word = i < 2 || !store::WordsOf(columns[i].name).empty();
@@ -109,10 +105,9 @@ class NumpyFile : public TableFile {
     file_.Write(row_);
     row_.clear();
   }
-  void Commit() override { file_.Commit(); }
 
  private:
-  AtomicFile file_;
+  AtomicFile& file_;
   const std::size_t width_;
   std::string row_;
 };
@@ -146,19 +141,19 @@ std::size_t LongestWord(const store::RunLayout& layout) {
 
 template <class Record>
 std::unique_ptr<TableFile> Open(ExportFormat format, const std::filesystem::path& stem, std::int64_t rows,
-                                std::size_t width, ExportedTable& written) {
+                                std::size_t width, FileSet& files, ExportedTable& written) {
   std::vector<store::Column> columns = {{"stage"}, {"arm"}, {"mission"}};
   for (const store::Column& column : store::ColumnsOf<Record>()) columns.push_back(column);
   written = {stem.string() + (format == ExportFormat::kCsv ? ".csv" : ".npy"), rows};
-  if (format == ExportFormat::kCsv) return std::make_unique<CsvFile>(written.file, columns);
-  return std::make_unique<NumpyFile>(written.file, columns, rows, width);
+  AtomicFile& file = files.Add(written.file);
+  if (format == ExportFormat::kCsv) return std::make_unique<CsvFile>(file, columns);
+  return std::make_unique<NumpyFile>(file, columns, rows, width);
 }
 
 }  // namespace
 
 std::vector<ExportedTable> ExportTables(store::ResultReader& reader, ExportFormat format,
-                                        const std::filesystem::path& folder) {
-  const NewFolder made(folder);  // a damaged run is refused below
+                                        const std::filesystem::path& folder, FileSet& files) {
   std::vector<sweep::RunId> counted;
   std::int64_t timesteps = 0;
   reader.ForEachMission(store::Steps::kSkip, [&](const store::StoredMission& mission) {
@@ -170,9 +165,9 @@ std::vector<ExportedTable> ExportTables(store::ResultReader& reader, ExportForma
   const std::size_t width = LongestWord(layout);
   std::vector<ExportedTable> written(2);
   const auto mission_table =
-      Open<mission::MissionRecord>(format, folder / "missions", missions, width, written[0]);
+      Open<mission::MissionRecord>(format, folder / "missions", missions, width, files, written[0]);
   const auto step_table =
-      Open<mission::TimestepRecord>(format, folder / "timesteps", timesteps, width, written[1]);
+      Open<mission::TimestepRecord>(format, folder / "timesteps", timesteps, width, files, written[1]);
   std::int64_t missions_written = 0, timesteps_written = 0;
   reader.ForEachMission(store::Steps::kLoad, [&](const store::StoredMission& mission) {
     // One that has been stored since they were counted may stand anywhere.
@@ -189,8 +184,6 @@ std::vector<ExportedTable> ExportTables(store::ResultReader& reader, ExportForma
     throw UserError(
         fmt::format("{}: missions were taken out while it was exported; the same command again exports it",
                     reader.dir()));
-  mission_table->Commit();
-  step_table->Commit();
   return written;
 }
 

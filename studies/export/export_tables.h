@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/file.h"
 #include "engine/store/reader.h"
 
 namespace ed3r::exports {
@@ -22,12 +23,12 @@ struct ExportedTable {
   std::int64_t rows = 0;
 };
 
-// Writes missions and timesteps into `folder`, which it makes where it is missing; each file appears whole or not at all.
+// Writes missions and timesteps for `folder`, which is there, as two files of `files`, which the caller commits.
 //   kCsv    missions.csv, timesteps.csv: RFC 4180, numbers in the shortest text that reads back to the same bits
 //   kNumpy  missions.npy, timesteps.npy: one structured array each; words are '<U' texts
 // Every mission is compared with its checksum. Throws UserError.
 std::vector<ExportedTable> ExportTables(store::ResultReader& reader, ExportFormat format,
-                                        const std::filesystem::path& folder);
+                                        const std::filesystem::path& folder, FileSet& files);
 
 // A line for each stage whose sweep keeps the timesteps of some missions alone: what is computed from its timesteps is not of
 // the stage.

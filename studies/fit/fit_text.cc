@@ -278,11 +278,13 @@ void WriteFitOutputs(const FitReport& report, const std::string& directory) {
   for (const char* name : {"report.txt", "plot.log"}) RemoveFile(path / name);
   std::ostringstream text;
   PrintReport(report, text);
-  WriteFile(path / "fit.json", ToJson(report).dump(1) + "\n");
-  WriteFile(path / "fitted.yaml", FittedYaml(report));
-  WriteFile(path / "flights.csv", FlightsCsv(report));
-  WriteFile(path / "rows.csv", RowsCsv(report));
-  WriteFile(path / "report.txt", text.str());
+  FileSet files;
+  files.Add(path / "fit.json", ToJson(report).dump(1) + "\n");
+  files.Add(path / "fitted.yaml", FittedYaml(report));
+  files.Add(path / "flights.csv", FlightsCsv(report));
+  files.Add(path / "rows.csv", RowsCsv(report));
+  files.Add(path / "report.txt", text.str());
+  files.Commit();
 }
 
 }  // namespace ed3r::fit

@@ -10,6 +10,7 @@
 #include <array>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "tests/app/command.h"
@@ -238,6 +239,32 @@ TEST(RunTest, AnArmOfTwoStagesIsNamedWithItsStage) {
     const CommandResult one = Ed3r("replay " + dir + mission);
     EXPECT_EQ(one.status, 0) << one.err;
   }
+
+  // Into one folder: what is of another mission does not stay beside this one's.
+  const fs::path out = scratch / "out";
+  const auto replay = [&](const char* mission) {
+    return Ed3r(fmt::format("replay {} {} --out {}", dir, mission, out.string())).status;
+  };
+  const auto names = [&] {
+    std::set<std::string> found;
+    for (const auto& entry : fs::directory_iterator(out)) found.insert(entry.path().filename().string());
+    return found;
+  };
+  ASSERT_EQ(replay("b/x/0"), 0);
+  const std::set<std::string> of_others = {"mine.png", "step-1.png"},
+                              of_replay = {"map.png", "timesteps.csv", "trace.csv"},
+                              of_options = {"mission.html", "step003_large.png", "step003_frames.png"};
+  for (const std::set<std::string>& some : {of_others, of_options})
+    for (const std::string& name : some) std::ofstream(out / name) << "there before";
+  std::set<std::string> kept = of_others;
+  kept.insert(of_replay.begin(), of_replay.end());
+  std::set<std::string> all = kept;
+  all.insert(of_options.begin(), of_options.end());
+  ASSERT_EQ(replay("b/x/0"), 0);
+  EXPECT_EQ(names(), all) << "the same mission";
+  fs::remove(out / "timesteps.csv");  // as a kill leaves it
+  ASSERT_EQ(replay("b/x/0"), 0);
+  EXPECT_EQ(names(), kept);
 }
 
 TEST(RunTest, ARunGrowsIntoWhatAFreshOneOfThatSizeIs) {

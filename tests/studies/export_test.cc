@@ -40,6 +40,7 @@ void ExportWhileItFlies(const std::string& dir, const std::string& out) {
   const store::RunLayout layout = store::TestLayout();
   const auto writer = store::ResultStore::Open(dir, store::TestRecipe(), layout);
   writer->Commit();
+  fs::create_directories(out);
   std::atomic<bool> ended = false;
   const std::jthread flying([&] {
     std::vector<sweep::RunId> missions = store::AllMissions(layout);
@@ -54,7 +55,9 @@ void ExportWhileItFlies(const std::string& dir, const std::string& out) {
   for (bool last = false; !last;) {
     last = ended;
     store::ResultReader reader(dir);
-    const std::vector<ExportedTable> tables = ExportTables(reader, ExportFormat::kNumpy, out);
+    FileSet files;
+    const std::vector<ExportedTable> tables = ExportTables(reader, ExportFormat::kNumpy, out, files);
+    files.Commit();
     EXPECT_EQ(tables.size(), 2u);
     for (const ExportedTable& table : tables) {
       const std::string file = Content(table.file);
@@ -69,17 +72,18 @@ TEST(ExportTest, ARunThatGoesOnIsExportedAsItWasCounted) {
   for (int run = 0; run < 8; ++run) ExportWhileItFlies(temp / fmt::format("run{}", run), temp / "out");
 }
 
-TEST(ExportTest, ADamagedRunLeavesNoFolder) {
+TEST(ExportTest, ADamagedRunLeavesNoFile) {
   const store::TempDir temp;
   store::WriteStore(temp / "run", store::AllMissions(store::TestLayout()));
   store::Connection(temp / "run/results.sqlite", store::Connection::Access::kReadWrite)
       .Execute("UPDATE timesteps SET total_j = 1 WHERE k = 1");
   store::ResultReader reader(temp / "run");
-  EXPECT_THROW(ExportTables(reader, ExportFormat::kCsv, temp / "new/tables"), UserError);
-  EXPECT_FALSE(fs::exists(temp / "new"));
   fs::create_directories(temp / "there");
-  EXPECT_THROW(ExportTables(reader, ExportFormat::kCsv, temp / "there"), UserError);
-  EXPECT_TRUE(fs::exists(temp / "there"));
+  {
+    FileSet files;
+    EXPECT_THROW(ExportTables(reader, ExportFormat::kCsv, temp / "there", files), UserError);
+  }
+  EXPECT_TRUE(fs::is_empty(temp / "there"));
 }
 
 }  // namespace
