@@ -22,6 +22,7 @@ void CheckTrees(Connection& database) {
   while (check.Step()) {
     const std::string found = check.Text(0);
     if (found == "ok" || found.find(" value in ") != std::string::npos) continue;
+    database.CheckRead();
     const bool index_alone = found.find(kMissionsIndex) != std::string::npos;
     throw UserError(fmt::format(
         "{}: the file is damaged: SQLite's own check says '{}'; {}", database.file(), Line(found),

@@ -185,6 +185,7 @@ void Connection::Fail() const {
     case SQLITE_NOTADB:
       throw UserError(fmt::format("{}: not a results file ({})", file_, reason));
     case SQLITE_CORRUPT:
+      CheckRead();
       throw UserError(fmt::format("{}: the file is damaged ({})", file_, reason));
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
@@ -210,6 +211,21 @@ void Connection::Fail() const {
       throw UserError(fmt::format("{}: the file is damaged ({})", file_, reason));
     default:
       throw InternalError(fmt::format("{}: SQLite: {}", file_, reason));
+  }
+}
+
+void Connection::CheckRead() const {
+  for (const int which : {SQLITE_FCNTL_FILE_POINTER, SQLITE_FCNTL_JOURNAL_POINTER}) {
+    sqlite3_file* file = nullptr;
+    int error = 0;
+    if (sqlite3_file_control(database_.get(), nullptr, which, &file) != SQLITE_OK || file == nullptr ||
+        file->pMethods == nullptr ||
+        file->pMethods->xFileControl(file, SQLITE_FCNTL_LAST_ERRNO, &error) != SQLITE_OK)
+      continue;
+    if (error == EIO || error == ENXIO)
+      throw StoreError(
+          fmt::format("{}: cannot be read: {}; the disk has failed, which says nothing of what is stored",
+                      file_, Reason(error)));
   }
 }
 

@@ -51,6 +51,8 @@ class Connection {
 
   // Throws the error of the last call on this connection.
   [[noreturn]] void Fail() const;
+  // StoreError where the disk has refused to give what was read for: SQLite calls that damage.
+  void CheckRead() const;
 
  private:
   friend class Statement;

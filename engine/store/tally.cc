@@ -63,12 +63,10 @@ void Tally::Mark(Connection& database, const RunLayout& of, const char* table,
       const auto here = SameMission(of, {static_cast<int>(s), static_cast<int>(a), 0}, layout_);
       runs.push_back(here ? layout_.RunIndex(here->stage, here->arm) : -1);
     }
-  // Along the small index where the file has it (schema.h).
-  const bool indexed =
-      std::string_view(table) == "missions" &&
-      database.Int(fmt::format("SELECT count(*) FROM sqlite_schema WHERE name = '{}'", kMissionsIndex)) > 0;
-  Statement select(database, fmt::format("SELECT run, mission FROM {}{}", table,
-                                         indexed ? fmt::format(" INDEXED BY {}", kMissionsIndex) : ""));
+  // The small index may be damaged, which nothing here would show.
+  const bool missions = std::string_view(table) == "missions";
+  Statement select(database,
+                   fmt::format("SELECT run, mission FROM {} {}", table, missions ? kAlongTheKey : ""));
   while (select.Step()) {
     const std::int64_t run = select.Int(0), mission = select.Int(1);
     const std::int64_t here = run < 0 || run >= std::ssize(runs) ? -1 : runs[static_cast<std::size_t>(run)];

@@ -1,5 +1,5 @@
 // Which missions several stores hold together: a run and the shards that are not merged into it yet. Counts each mission once
-// and compares nothing with its checksum, so that a million missions take a fraction of a second ('ed3r verify' compares).
+// and compares nothing with its checksum, so that a million missions take a second ('ed3r verify' compares).
 #pragma once
 
 #include <cstdint>

@@ -2,10 +2,13 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <functional>
 #include <iterator>
 
+#include "engine/store/digest.h"
+#include "engine/store/tally.h"
 #include "tests/store/store_fixture.h"
 
 namespace ed3r::store {
@@ -40,6 +43,59 @@ TEST(DamageTest, NothingThere) {
 std::vector<unsigned char> BytesOf(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+bool disk_fails = false;
+using Pread = ssize_t (*)(int, void*, size_t, off64_t);
+Pread system_pread = nullptr;
+
+// From the second page on, a disk that cannot be read.
+ssize_t FailingPread(int file, void* bytes, size_t size, off64_t at) {
+  if (!disk_fails || at < 16384) return system_pread(file, bytes, size, at);
+  errno = EIO;
+  return -1;
+}
+
+TEST(DamageTest, ADiskThatCannotBeReadIsNotDamage) {
+  const TempDir temp;
+  WriteStore(temp / "run", AllMissions(TestLayout()));
+  sqlite3_vfs* const vfs = sqlite3_vfs_find(nullptr);
+  system_pread = reinterpret_cast<Pread>(vfs->xGetSystemCall(vfs, "pread64"));
+  ASSERT_NE(system_pread, nullptr);
+  vfs->xSetSystemCall(vfs, "pread64", reinterpret_cast<sqlite3_syscall_ptr>(FailingPread));
+  const auto refusal = [&](const std::function<void(ResultReader&)>& read) -> std::string {
+    disk_fails = false;
+    ResultReader reader(temp / "run");
+    disk_fails = true;
+    try {
+      read(reader);
+    } catch (const StoreError& error) {
+      return error.what();
+    } catch (const std::exception& error) {
+      return std::string("another error: ") + error.what();
+    }
+    return "none";
+  };
+  const std::string said = ResultsIn(temp / "run") +
+                           ": cannot be read: Input/output error; the disk has failed, which says nothing "
+                           "of what is stored";
+  EXPECT_EQ(refusal([](ResultReader& reader) { DigestOf(reader); }), said);
+  EXPECT_EQ(refusal([](ResultReader& reader) { reader.FindDamage(); }), said);
+  disk_fails = false;
+  vfs->xSetSystemCall(vfs, "pread64", nullptr);
+  EXPECT_EQ(ResultReader(temp / "run").FindDamage().size(), 0u);
+}
+
+TEST(DamageTest, AnIndexThatHoldsNothing) {
+  const TempDir temp;
+  WriteStore(temp / "run", AllMissions(TestLayout()));
+  Sql(ResultsIn(temp / "run"),
+      "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage FROM sqlite_schema "
+      "WHERE name = 'failures') WHERE name = 'missions_by_run'");
+  Tally tally(TestRecipe(), TestLayout());
+  tally.Add(temp / "run");
+  for (const ArmStatus& arm : tally.Arms()) EXPECT_EQ(arm.done, arm.planned) << arm.arm;
+  EXPECT_EQ(ResultReader(temp / "run").CountMissions(), std::ssize(AllMissions(TestLayout())));
 }
 
 // The tree of the missions is walked, whatever the index says; SQLite's own check says what is wrong with that.
