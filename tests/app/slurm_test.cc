@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -140,6 +141,22 @@ wait $task
   const auto status = nlohmann::json::parse(Ed3r("status --json " + store).out);
   EXPECT_GT(status["arms"][0]["done"], 0) << ReadAll(scratch_ / "run/log");
   EXPECT_TRUE(std::filesystem::is_empty(local));
+}
+
+TEST_F(PiecesTest, ATaskWithoutItsOwnDiskSaysSo) {
+  const std::string sweep = Write("name: once\nmissions: 2\nset: {strategy: rbs, " + kWorld + "}");
+  const std::string none = (scratch_ / "none").string(), store = Run() + "/shards/online/00001",
+                    log = (scratch_ / "log").string();
+  const std::string task =
+      fmt::format("cd {}/slurm; SLURM_ARRAY_TASK_ID=1 bash 1-online.sbatch >{} 2>&1", Run(), log);
+  ExpectDone(Ed3r(fmt::format("slurm {} --shards 1 --out {}", sweep, Run())));
+  EXPECT_EQ(std::system(task.c_str()) >> 8, 0);
+  ExpectDone(Ed3r(fmt::format("slurm {} --shards 1 --scratch {} --out {} --force", sweep, none, Run())));
+  EXPECT_EQ(std::system(task.c_str()) >> 8, 2);
+  const std::string said = ReadAll(log);
+  EXPECT_TRUE(Says(said, "no folder can be made in " + none + " on ")) << said;
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  EXPECT_EQ(Ed3r("verify " + store).out, store + ": 2 missions whole\n");
 }
 
 // A node stops answering, the task is flown by another one, and then the first brings its part home.

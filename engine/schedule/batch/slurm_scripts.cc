@@ -61,7 +61,10 @@ fly() {{
   local store=$shards/$1/$(printf '%05d' "$2") out status=0
   out=$store
   if [ -n "$scratch" ]; then
-    out=$(mktemp -d "$scratch/ed3r-XXXXXX")
+    if ! out=$(mktemp -d "$scratch/ed3r-XXXXXX" 2>/dev/null); then
+      echo "no folder can be made in $scratch on $(hostname), the disk of --scratch; name one that every node has" >&2
+      finish 2
+    fi
     # By merge and not by cp: what a killed task has stored may still lie in the journal beside its file.
     if [ -s "$store/results.sqlite" ] && ! "$ed3r" merge "$out" "$store" >&2; then
       rm -rf "$out"
