@@ -8,6 +8,7 @@
 
 #include "engine/app/commands.h"
 #include "engine/app/failure_text.h"
+#include "engine/app/kept_inputs.h"
 #include "engine/app/report_missions.h"
 #include "engine/app/stage_state.h"
 #include "engine/app/status_of_shards.h"
@@ -43,12 +44,15 @@ struct Check {
   bool done = false;
   bool possible = true;  // false: without checksums
   std::vector<store::DamagedMission> damage;
+  std::string inputs;  // of what is kept besides missions
+
+  bool Whole() const { return damage.empty() && inputs.empty(); }
 };
 
 Check CheckOf(store::ResultReader& reader) {
-  if (!reader.Tables().checked()) return {false, false, {}};
+  if (!reader.Tables().checked()) return {.possible = false};
   if (!reader.IsQuicklyCompared()) return {};
-  return {true, true, reader.FindDamage()};
+  return {true, true, reader.FindDamage(), DamageOfInputs(reader, reader.dir())};
 }
 
 void PrintStatusJson(store::ResultReader& reader, const Check& check) {
@@ -60,6 +64,8 @@ void PrintStatusJson(store::ResultReader& reader, const Check& check) {
   object["damaged"] = nlohmann::ordered_json::array();
   for (const store::DamagedMission& damage : check.damage)
     object["damaged"].push_back({{"mission", damage.name}, {"problem", damage.what}});
+  object["other"] = nlohmann::ordered_json::array();
+  if (!check.inputs.empty()) object["other"].push_back(check.inputs);
   fmt::print("{}\n", object.dump(2));
 }
 
@@ -88,6 +94,12 @@ void PrintStatus(store::ResultReader& reader, const Check& check) {
         "again\n",
         Counted(std::ssize(check.damage), "mission"), check.damage.front().name, check.damage.front().what,
         reader.dir());
+  if (!check.inputs.empty()) fmt::print("{}\n", check.inputs);
+}
+
+// Results are of missions alone, and are whole where they are not damaged themselves.
+void TellDamageOfInputs(store::ResultReader& reader, const std::string& dir) {
+  if (const std::string inputs = DamageOfInputs(reader, dir); !inputs.empty()) Tell("note: {}", inputs);
 }
 
 }  // namespace
@@ -127,7 +139,7 @@ Command AddStatus(Program& program) {
             store::ResultReader reader(options->dir);
             const Check check = CheckOf(reader);
             options->json ? PrintStatusJson(reader, check) : PrintStatus(reader, check);
-            return static_cast<int>(check.damage.empty() ? kDone : kFailedInside);
+            return static_cast<int>(check.Whole() ? kDone : kFailedInside);
           }};
 }
 
@@ -208,6 +220,7 @@ int MakeReportOf(const ReportOptions& options) {
                report::ReportText(report), folder.out, report.tables.size(), written.figures);
   FlushOutput();
   TellNotes(run.notes());
+  TellDamageOfInputs(reader, options.dir);
   for (const std::string& note :
        {NamesOfSeveralStages(results), written.note, written.page_note, watched.note})
     if (!note.empty()) Tell("note: {}", note);
@@ -266,6 +279,7 @@ Command AddDigest(Program& program) {
               fmt::print("{}\n", digest);
             FlushOutput();
             if (!reader.Tables().checked()) Tell("note: {}", store::kNothingToCompare);
+            TellDamageOfInputs(reader, options->dir);
             TellNotes(run.notes());
             if (missions < planned)
               Tell("note: this is the digest of {} of {} planned missions", missions, planned);

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "engine/app/commands.h"
+#include "engine/app/kept_inputs.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
-#include "engine/schedule/training_stage.h"
 #include "engine/store/difference.h"
 #include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
@@ -42,8 +42,8 @@ void VerifyStore(const std::string& dir, Verification& found) {
           fmt::format("{}: {}, {}", dir, Counted(missions, "mission"), store::kNothingToCompare));
     for (store::DamagedMission& damage : reader.FindDamage())
       found.damage.push_back({dir, std::move(damage)});
-    reader.Files();
-    schedule::NetworkShelf::From(reader.Networks(), dir);
+    if (std::string inputs = DamageOfInputs(reader, dir); !inputs.empty())
+      found.other.push_back(std::move(inputs));
   } catch (const UserError& error) {
     // What is not there is bad input; what is there and cannot be read is what was asked.
     if (!std::filesystem::exists(std::filesystem::path(dir) / store::kResultsFile)) throw;

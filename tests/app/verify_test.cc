@@ -264,6 +264,26 @@ stages:
   EXPECT_TRUE(Contains(replayed.out, "identical to the stored record")) << replayed.out;
   EXPECT_FALSE(fs::exists(no_cache)) << "it was trained again";
   EXPECT_EQ(Ed3r("verify " + moved).status, 0);
+
+  // A damaged network: what is of missions is right, and everyone who looks is told.
+  const std::string digest = Ed3r("digest " + moved).out;
+  Sql(scratch / "moved",
+      "UPDATE networks SET model = zeroblob(length(model)) WHERE sha256 = (SELECT min(sha256) FROM "
+      "networks)");
+  const std::string damage = "/results.sqlite: the file is damaged: its network '";
+  const CommandResult digested = Ed3r("digest " + moved), status = Ed3r("status " + moved);
+  EXPECT_EQ(digested.status, 0);
+  EXPECT_EQ(digested.out, digest);
+  EXPECT_TRUE(Contains(digested.err, "note: " + moved + damage)) << digested.err;
+  EXPECT_EQ(status.status, 1);
+  EXPECT_TRUE(Contains(status.out, moved + damage)) << status.out;
+  const json status_json = json::parse(Ed3r("status --json " + moved).out);
+  ASSERT_EQ(status_json["other"].size(), 1u);
+  EXPECT_TRUE(Contains(status_json["other"][0], damage));
+  const CommandResult reported = Ed3r("report --no-figures " + moved);
+  EXPECT_EQ(reported.status, 0);
+  EXPECT_TRUE(Contains(reported.err, "note: " + moved + damage)) << reported.err;
+  EXPECT_EQ(Ed3r("verify " + moved).status, 1);
 }
 
 }  // namespace

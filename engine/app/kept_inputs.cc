@@ -1,0 +1,18 @@
+#include "engine/app/kept_inputs.h"
+
+#include "engine/core/check.h"
+#include "engine/schedule/training_stage.h"
+
+namespace ed3r::app {
+
+std::string DamageOfInputs(store::ResultReader& reader, const std::string& dir) {
+  try {
+    reader.Files();
+    schedule::NetworkShelf::From(reader.Networks(), dir);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace ed3r::app
