@@ -14,6 +14,7 @@
 #include "engine/core/check.h"
 #include "engine/core/file.h"
 #include "engine/core/remove_file.h"
+#include "engine/store/directory_lock.h"
 #include "engine/world/map_picture.h"
 #include "studies/metrics/number_text.h"
 #include "studies/report/web_page.h"
@@ -151,6 +152,7 @@ int Replay(const Options& options) {
   std::optional<MissionFilm> film;
   if (!options.video.empty()) film.emplace(task, options.video);
   MakeFolder(out);
+  const auto alone = store::LockToWrite(out.string());
 
   FileSet files;
   TraceFile trace(files.Add(out / "trace.csv"), film ? &*film : nullptr);

@@ -1,8 +1,10 @@
 // The program as its users meet it: the same results however a sweep is flown, and what happens when things go wrong.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sqlite3.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -265,6 +267,10 @@ TEST(RunTest, AnArmOfTwoStagesIsNamedWithItsStage) {
   fs::remove(out / "timesteps.csv");  // as a kill leaves it
   ASSERT_EQ(replay("b/x/0"), 0);
   EXPECT_EQ(names(), kept);
+  const int other = open(out.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(flock(other, LOCK_EX), 0);
+  EXPECT_EQ(replay("a/x/0"), 2) << "another ed3r writes there";
+  close(other);
 }
 
 TEST(RunTest, ARunGrowsIntoWhatAFreshOneOfThatSizeIs) {
