@@ -178,6 +178,7 @@ int Submit(const fs::path& folder, const std::vector<std::string>& arguments) {
   std::vector<std::string> command = {(folder / "submit.sh").string()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   std::vector<char*> words;
+  words.reserve(command.size() + 1);
   for (std::string& word : command) words.push_back(word.data());
   words.push_back(nullptr);
   FlushOutput();  // before what the script says

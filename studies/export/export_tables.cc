@@ -42,7 +42,7 @@ class TableFile {
   virtual void EndRow() = 0;
 };
 
-class CsvFile : public TableFile {
+class CsvFile final : public TableFile {
  public:
   CsvFile(AtomicFile& file, const std::vector<store::Column>& columns) : file_(file) {
     for (const store::Column& column : columns) Word(column.name);
@@ -70,7 +70,7 @@ class CsvFile : public TableFile {
 };
 
 // Format 1.0 of numpy.lib.format: a header of Python text, padded to 64 bytes, then the rows, packed.
-class NumpyFile : public TableFile {
+class NumpyFile final : public TableFile {
  public:
   // `width`: characters of a word.
   NumpyFile(AtomicFile& file, const std::vector<store::Column>& columns, std::int64_t rows, std::size_t width)
