@@ -6,13 +6,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <optional>
 #include <random>
 #include <thread>
 #include <utility>
 
 #include "engine/core/check.h"
+#include "engine/store/sqlite.h"
 
 namespace ed3r::store {
 namespace {
@@ -21,10 +24,14 @@ constexpr std::uint32_t kMostSchemaChanges = 4096;  // of one session; they are 
 constexpr int kLooks = 10;
 constexpr std::chrono::milliseconds kBetweenLooks{20};
 
-// A journal, on which SQLite has no locks. Numbers are big-endian; places are those of SQLite's file format.
+// A journal, on which SQLite has no locks. Numbers are big-endian; places are those of SQLite's file format. StoreError where the
+// system fails to give it: it would be taken for none, and SQLite might take it up later.
 class BinaryFile {
  public:
-  explicit BinaryFile(const std::string& name) : descriptor_(open(name.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  explicit BinaryFile(const std::string& name)
+      : name_(name), descriptor_(open(name.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor_ < 0) CheckError();
+  }
   ~BinaryFile() {
     if (descriptor_ >= 0) close(descriptor_);
   }
@@ -34,7 +41,9 @@ class BinaryFile {
   bool there() const { return descriptor_ >= 0; }
   std::int64_t Size() const { return lseek(descriptor_, 0, SEEK_END); }
   bool Read(std::int64_t at, void* bytes, std::size_t size) const {
-    return pread(descriptor_, bytes, size, at) == static_cast<ssize_t>(size);
+    const ssize_t got = pread(descriptor_, bytes, size, at);
+    if (got < 0) CheckError();
+    return got == static_cast<ssize_t>(size);
   }
   std::optional<std::uint32_t> Number(std::int64_t at) const {
     std::array<unsigned char, 4> bytes = {};
@@ -45,6 +54,13 @@ class BinaryFile {
   }
 
  private:
+  // What is not there, or nobody's to read, SQLite finds so, too.
+  void CheckError() const {
+    if (errno == ENOENT || errno == EACCES || errno == EISDIR || errno == ELOOP) return;
+    throw StoreError(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno)));
+  }
+
+  std::string name_;
   int descriptor_;
 };
 
