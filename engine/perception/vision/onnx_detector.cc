@@ -16,7 +16,6 @@
 #include "engine/perception/vision/onnx_reading.h"
 #include "engine/perception/vision/onnx_reason.h"
 #include "engine/perception/vision/onnx_rewrite.h"
-#include "engine/perception/vision/onnx_shapes.h"
 #include "engine/perception/vision/pool.h"
 #include "engine/perception/vision/resize.h"
 #include "engine/world/quiet_opencv.h"
@@ -157,7 +156,6 @@ class OnnxDetector final : public FrameDetector {
         const std::vector<std::uint8_t> frame(3 * Pixels(), static_cast<std::uint8_t>(level));
         try {
           const std::vector<float> outputs = Answer(network, frame.data());
-          if (level == 0) CheckShapes(network, cv::dnn::shape(Input(frame.data())), name_);
           CheckOutputs(outputs);
           CheckDeclared(outputs.size());
           Confidence(outputs);

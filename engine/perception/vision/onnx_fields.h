@@ -67,7 +67,7 @@ enum ValueField : std::uint32_t {
 };
 
 inline constexpr std::uint64_t kTypeOfFloat = 1, kTypeOfInt = 2, kTypeOfInts = 7;  // of attributes
-inline constexpr std::uint64_t kFloat = 1, kInt64 = 7, kFloat16 = 10, kDouble = 11;
+inline constexpr std::uint64_t kFloat = 1, kInt32 = 6, kInt64 = 7, kFloat16 = 10, kDouble = 11;
 inline constexpr std::uint64_t kLiesOutside = 1;  // of kLocation
 inline constexpr std::int64_t kOpenSide = -1;     // what some exporters write for a side that is left open
 

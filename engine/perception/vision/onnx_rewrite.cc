@@ -13,6 +13,8 @@
 #include "engine/core/protobuf.h"
 #include "engine/perception/vision/onnx_fields.h"
 #include "engine/perception/vision/onnx_mend.h"
+#include "engine/perception/vision/onnx_node.h"
+#include "engine/perception/vision/onnx_shapes.h"
 
 namespace ed3r::perception {
 namespace {
@@ -51,9 +53,8 @@ class Rewriter {
     ForEachField(bytes, name_, [&](const ProtobufField& field) {
       if (field.number == onnx::kProducer && field.IsBytes()) around_.producer = field.bytes;
       if (field.number == onnx::kOpset && field.IsBytes()) ReadOpset(field.bytes);
-      if (field.number == onnx::kGraph && field.IsBytes()) FindBounds(field.bytes);
+      if (field.number == onnx::kGraph && field.IsBytes()) FindConstants(field.bytes);
     });
-    FindWhole();
     ProtobufWriter out;
     ForEachField(bytes, name_, [&](const ProtobufField& field) {
       if (field.number != onnx::kGraph || !field.IsBytes()) {
@@ -88,20 +89,6 @@ class Rewriter {
           fmt::format("its output '{}' does not depend on its input '{}'", reading_.output, reading_.input));
   }
 
-  // Of these nothing is cut off by a Cast.
-  void FindWhole() {
-    const std::set<std::string> makes_whole = {"Shape", "Size",  "ArgMax", "ArgMin", "Floor",
-                                               "Ceil",  "Round", "Equal",  "Less",   "Greater"};
-    for (const OnnxStep& step : outline_.steps) {
-      const bool of_whole =
-          std::all_of(step.inputs.begin(), step.inputs.end(), [&](const std::string& input) {
-            return input.empty() || around_.whole.contains(input) || outline_.weights.contains(input);
-          });
-      if (of_whole || makes_whole.contains(step.op))
-        around_.whole.insert(step.outputs.begin(), step.outputs.end());
-    }
-  }
-
   // Of the standard's own operators.
   void ReadOpset(std::string_view bytes) {
     std::string_view domain;
@@ -114,10 +101,10 @@ class Rewriter {
   }
 
   // Constants stand among the weights or come from a step of their own.
-  void FindBounds(std::string_view graph) {
+  void FindConstants(std::string_view graph) {
     ForEachField(graph, name_, [&](const ProtobufField& field) {
       if (field.number == onnx::kInitializer && field.IsBytes())
-        AddConstant(Tensor(field.bytes), TensorName(field.bytes), name_, around_);
+        around_.constants[TensorName(field.bytes)] = ConstantOf(Tensor(field.bytes), name_);
       if (field.number != onnx::kNode || !field.IsBytes()) return;
       std::string output;
       std::string_view attribute, op;
@@ -129,19 +116,21 @@ class Rewriter {
       if (op != "Constant") return;
       ForEachField(attribute, name_, [&](const ProtobufField& part) {
         if (part.number == onnx::kAttributeTensor && part.IsBytes())
-          AddConstant(Tensor(part.bytes), output, name_, around_);
+          around_.constants[output] = ConstantOf(Tensor(part.bytes), name_);
       });
     });
   }
 
   std::string Graph(std::string_view bytes) {
     ProtobufWriter out;
+    OnnxShapes shapes(around_, reading_.input, InputSides(), name_);
     std::size_t step = 0;
     ForEachField(bytes, name_, [&](const ProtobufField& field) {
       if (!field.IsBytes()) return;
       switch (field.number) {
         case onnx::kNode:
           if (!keep_.at(step++)) break;
+          shapes.Add(NodeOf(field.bytes, name_));
           for (const std::string& node : Mended(Node(field.bytes), around_, name_))
             out.Bytes(onnx::kNode, node);
           break;
@@ -164,14 +153,17 @@ class Rewriter {
     return out.bytes();
   }
 
+  OnnxSides InputSides() const {
+    if (reading_.channels == ChannelPlace::kFirst) return {1, 3, reading_.height_px, reading_.width_px};
+    return {1, reading_.height_px, reading_.width_px, 3};
+  }
+
   void Input(OnnxValue value, ProtobufWriter& out) const {
     if (value.name != reading_.input) {
       if (needed_.contains(value.name)) out.Bytes(onnx::kInput, ValueBytes(value));  // weights, listed
       return;
     }
-    const bool first = reading_.channels == ChannelPlace::kFirst;
-    const int sides[] = {1, first ? 3 : reading_.height_px, first ? reading_.height_px : reading_.width_px,
-                         first ? reading_.width_px : 3};
+    const OnnxSides sides = InputSides();
     for (std::size_t i = 0; i < value.dims.size(); ++i) value.dims[i].size = sides[i];
     out.Bytes(onnx::kInput, ValueBytes(value));
   }

@@ -1,67 +1,66 @@
 #include "engine/perception/vision/onnx_shapes.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
-#include <cstdlib>
-#include <vector>
 
-#include "engine/core/check.h"
-#include "engine/perception/vision/onnx_mend.h"
+#include "engine/perception/vision/onnx_shape_step.h"
 
 namespace ed3r::perception {
 namespace {
 
-using cv::dnn::MatShape;
+class Whole : public ShapeStep {
+ public:
+  explicit Whole(const ShapeStep& step) : ShapeStep(step) {}
 
-constexpr char kPrefix[] = "onnx_node!";  // OpenCV's, before the names of steps
-
-MatShape ShapeOf(const cv::dnn::Net& network, const MatShape& input, int layer) {
-  std::vector<MatShape> in, out;
-  network.getLayerShapes(input, layer, in, out);
-  return out.empty() ? MatShape{} : out.front();
-}
-
-// OpenCV takes the larger operand for the first, and spreads the smaller one.
-void CheckQuotient(const cv::dnn::Net& network, const MatShape& input, int second, const std::string& step,
-                   const std::string& name) {
-  const int first = network.getLayerId(std::string(kPrefix) + kFirstOperand + step);
-  const MatShape of_second = ShapeOf(network, input, second);
-  const MatShape of_first = first < 0 ? MatShape{} : ShapeOf(network, input, first);
-  if (of_first == of_second || (first >= 0 && cv::dnn::total(of_first) > cv::dnn::total(of_second))) return;
-  throw UserError(
-      fmt::format("{}: operator {} divides [{}] by [{}], which OpenCV turns round; allowed: the larger one "
-                  "divided by the smaller, or a Mul by the quotient of 1",
-                  name, step, fmt::join(of_first, ", "), fmt::join(of_second, ", ")));
-}
-
-// "1 of Softmax (node 'x')": before opset 13 the sides from there on count as one.
-void CheckFlattened(const cv::dnn::Net& network, const MatShape& input, int layer, const std::string& rest,
-                    const std::string& name) {
-  const MatShape shape = ShapeOf(network, input, layer);
-  const int told = std::atoi(rest.c_str()), rank = static_cast<int>(shape.size());
-  const int axis = std::clamp(told < 0 ? told + rank : told, 0, rank);
-  const bool alike =
-      std::all_of(shape.begin() + std::min(axis + 1, rank), shape.end(), [](int side) { return side == 1; });
-  if (alike) return;
-  throw UserError(fmt::format(
-      "{}: operator {} is taken of [{}] from side {} on as one (opset below 13), which OpenCV does "
-      "not; allowed: sides of 1 behind that, or a Flatten before",
-      name, rest.substr(rest.find(" of ") + 4), fmt::join(shape, ", "), told));
-}
+  std::vector<std::int64_t> Made() const {
+    const std::string& op = node_.op;
+    if (op == "Shape") return X();
+    std::vector<std::int64_t> first = Numbers(0, "");
+    if (op == "Cast" || op == "Unsqueeze") return first;
+    if (op == "Concat") {
+      for (std::size_t i = 1; i < node_.inputs.size(); ++i)
+        for (const std::int64_t number : Numbers(i, "")) first.push_back(number);
+      return first;
+    }
+    const std::vector<std::int64_t> second = Numbers(1, "");
+    const auto size = std::ssize(first);
+    std::vector<std::int64_t> made;
+    if (op == "Gather") {
+      for (const std::int64_t at : second) {
+        if (at < -size || at >= size)
+          Refuse(fmt::format("takes number {} of {}", at, size), "those that there are");
+        made.push_back(first[static_cast<std::size_t>(at < 0 ? at + size : at)]);
+      }
+      return made;
+    }
+    if (op == "Slice") {
+      const std::vector<std::int64_t> ends = Numbers(2, "");
+      if (second.size() != 1 || ends.size() != 1) Refuse("has several starts or ends", "one");
+      const auto clamped = [&](std::int64_t at) {
+        return std::clamp<std::int64_t>(at < 0 ? at + size : at, 0, size);
+      };
+      for (std::int64_t i = clamped(second[0]); i < clamped(ends[0]); ++i)
+        made.push_back(first[static_cast<std::size_t>(i)]);
+      return made;
+    }
+    if (first.size() != 1 || second.size() != 1) Refuse("takes several whole numbers", "one and one");
+    if (op == "Div" && (second[0] <= 0 || first[0] < 0))
+      Refuse("divides by 0, or negative numbers", "positive ones");
+    return {op == "Div" ? first[0] / second[0] : first[0] * second[0]};
+  }
+};
 
 }  // namespace
 
-void CheckShapes(const cv::dnn::Net& network, const MatShape& input, const std::string& name) {
-  const std::string second = std::string(kPrefix) + kSecondOperand,
-                    flattened = std::string(kPrefix) + kFlattened;
-  for (const std::string& layer : network.getLayerNames()) {
-    const int id = network.getLayerId(layer);
-    if (layer.starts_with(second)) CheckQuotient(network, input, id, layer.substr(second.size()), name);
-    if (layer.starts_with(flattened))
-      CheckFlattened(network, input, id, layer.substr(flattened.size()), name);
-  }
+std::vector<std::int64_t> WholeNumbers(const ShapeStep& step) { return Whole(step).Made(); }
+
+void OnnxShapes::Add(const OnnxNode& node) {
+  const ShapeStep step(node, around_, sides_, whole_, name_);
+  const OnnxRule rule = RuleOf(node, step.Kinds(), around_.opset, name_);
+  if (rule == OnnxRule::kShape || rule == OnnxRule::kNumbers) whole_[node.outputs.at(0)] = WholeNumbers(step);
+  std::vector<OnnxSides> outputs = ComputedSides(step, rule);
+  if (outputs.empty()) outputs = ArrangedSides(step, rule);
+  for (std::size_t i = 0; i < outputs.size() && i < node.outputs.size(); ++i)
+    sides_[node.outputs[i]] = outputs[i];
 }
 
 }  // namespace ed3r::perception

@@ -1,14 +1,35 @@
-// Steps of ONNX models that OpenCV 4.6 reads as the standard says for some shapes only, which it alone knows once the
-// model is loaded. Mended() names what they take; here the shapes of what bears such a name are looked at.
+// The shapes of the values of an ONNX model, step by step, as the standard has them, and what they must be for OpenCV 4.6 to
+// read the steps so.
 #pragma once
 
-#include <opencv2/dnn.hpp>
-#include <opencv2/dnn/shape_utils.hpp>
+#include <map>
 #include <string>
+#include <vector>
+
+#include "engine/perception/vision/onnx_node.h"
 
 namespace ed3r::perception {
 
-// `input`: the frame's shape. `name` begins messages. Throws UserError.
-void CheckShapes(const cv::dnn::Net& network, const cv::dnn::MatShape& input, const std::string& name);
+using OnnxSides = std::vector<std::int64_t>;
+
+class OnnxShapes {
+ public:
+  // `input` is the frame's value; `name` stands in messages and must outlive this, as `around`.
+  OnnxShapes(const OnnxSurroundings& around, const std::string& input, const OnnxSides& sides,
+             const std::string& name)
+      : around_(around), name_(name) {
+    sides_[input] = sides;
+  }
+
+  // Steps come in the order in which they run. Throws UserError for forms that are not in the table of onnx_forms.h, and
+  // for shapes with which OpenCV reads them otherwise than the standard.
+  void Add(const OnnxNode& node);
+
+ private:
+  const OnnxSurroundings& around_;
+  const std::string& name_;
+  std::map<std::string, OnnxSides> sides_;                  // of what is computed
+  std::map<std::string, std::vector<std::int64_t>> whole_;  // what is made of shapes
+};
 
 }  // namespace ed3r::perception

@@ -1,0 +1,114 @@
+#include "engine/perception/vision/onnx_node.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "engine/core/protobuf.h"
+#include "engine/perception/vision/onnx_fields.h"
+
+namespace ed3r::perception {
+namespace {
+
+// Whole numbers stand one by one or packed.
+void Append(const ProtobufField& field, const std::string& name, std::vector<std::int64_t>& numbers) {
+  if (!field.IsBytes()) numbers.push_back(static_cast<std::int64_t>(field.value));
+  for (std::string_view packed = field.IsBytes() ? field.bytes : ""; !packed.empty();)
+    numbers.push_back(static_cast<std::int64_t>(TakeVarint(packed, name)));
+}
+
+template <class Number, class To>
+void AppendRaw(std::string_view bytes, std::vector<To>& numbers) {
+  for (std::size_t i = 0; i + sizeof(Number) <= bytes.size(); i += sizeof(Number)) {
+    Number number{};
+    std::memcpy(&number, bytes.data() + i, sizeof number);
+    numbers.push_back(static_cast<To>(number));
+  }
+}
+
+void ReadAttribute(std::string_view bytes, const std::string& name, OnnxNode& node) {
+  std::string key;
+  OnnxAttribute attribute;
+  ForEachField(bytes, name, [&](const ProtobufField& field) {
+    if (field.number == onnx::kAttributeName && field.IsBytes()) key = field.bytes;
+    if (field.number == onnx::kAttributeFloat && field.wire == ProtobufField::Wire::kFixed32) {
+      std::vector<float> number;
+      AppendRaw<float>(field.bytes, number);
+      attribute.number = static_cast<double>(number.at(0));
+    }
+    if (field.number == onnx::kAttributeInt)
+      attribute.number = static_cast<double>(static_cast<std::int64_t>(field.value));
+    if (field.number == onnx::kAttributeText && field.IsBytes()) attribute.text = field.bytes;
+    if (field.number == onnx::kAttributeInts) Append(field, name, attribute.numbers);
+  });
+  node.attributes[key] = std::move(attribute);
+}
+
+}  // namespace
+
+std::vector<std::string> OnnxAttribute::Values() const {
+  if (!text.empty()) return {text};
+  if (numbers.empty()) return {fmt::format("{}", number)};
+  std::vector<std::string> values;
+  for (const std::int64_t value : numbers) values.push_back(std::to_string(value));
+  return values;
+}
+
+double OnnxNode::Number(const std::string& attribute, double otherwise) const {
+  const auto found = attributes.find(attribute);
+  return found == attributes.end() ? otherwise : found->second.number;
+}
+
+std::vector<std::int64_t> OnnxNode::Numbers(const std::string& attribute) const {
+  const auto found = attributes.find(attribute);
+  return found == attributes.end() ? std::vector<std::int64_t>{} : found->second.numbers;
+}
+
+std::string OnnxNode::Word(const std::string& attribute, const std::string& otherwise) const {
+  const auto found = attributes.find(attribute);
+  return found == attributes.end() ? otherwise : found->second.text;
+}
+
+std::string OnnxNode::Text() const {
+  return fmt::format("{}{} (node '{}')", domain.empty() || domain == "ai.onnx" ? "" : domain + ".", op, name);
+}
+
+OnnxNode NodeOf(std::string_view bytes, const std::string& name) {
+  OnnxNode node;
+  ForEachField(bytes, name, [&](const ProtobufField& field) {
+    if (!field.IsBytes()) return;
+    if (field.number == onnx::kNodeOp) node.op = field.bytes;
+    if (field.number == onnx::kNodeDomain) node.domain = field.bytes;
+    if (field.number == onnx::kNodeName) node.name = field.bytes;
+    if (field.number == onnx::kNodeOutput) node.outputs.emplace_back(field.bytes);
+    if (field.number == onnx::kNodeInput) node.inputs.emplace_back(field.bytes);
+    if (field.number == onnx::kNodeAttribute) ReadAttribute(field.bytes, name, node);
+  });
+  return node;
+}
+
+OnnxConstant ConstantOf(std::string_view tensor, const std::string& name) {
+  constexpr std::int64_t kMost = 64;
+  OnnxConstant constant;
+  std::string_view raw;
+  std::int64_t elements = 1;
+  ForEachField(tensor, name, [&](const ProtobufField& field) {
+    if (field.number == onnx::kType) constant.type = field.value;
+    if (field.number == onnx::kDims) Append(field, name, constant.sides);
+    if (field.number == onnx::kRaw && field.IsBytes()) raw = field.bytes;
+  });
+  for (const std::int64_t side : constant.sides) elements *= side;
+  if (elements > kMost) return constant;
+  ForEachField(tensor, name, [&](const ProtobufField& field) {
+    if (field.number == onnx::kFloats) AppendRaw<float>(field.bytes, constant.floats);
+    if (field.number == onnx::kInt64s || field.number == onnx::kInt32s) Append(field, name, constant.whole);
+  });
+  if (constant.type == onnx::kFloat) AppendRaw<float>(raw, constant.floats);
+  if (constant.type == onnx::kInt64) AppendRaw<std::int64_t>(raw, constant.whole);
+  if (constant.type == onnx::kInt32) AppendRaw<std::int32_t>(raw, constant.whole);
+  if (std::ssize(constant.floats) != elements) constant.floats.clear();
+  if (std::ssize(constant.whole) != elements) constant.whole.clear();
+  return constant;
+}
+
+}  // namespace ed3r::perception
