@@ -1,4 +1,4 @@
-# cmake --install build/release --prefix DIR: a tree that may be moved (engine/core/shipped.h finds what it needs beside the
+# cmake --install build/release --prefix DIR: a tree that may be moved (engine/core/files/shipped.h finds what it needs beside the
 # program), and cpack: the same as a Debian package.
 include(GNUInstallDirs)
 set(ED3R_SHARE "${CMAKE_INSTALL_DATADIR}/ed3r")

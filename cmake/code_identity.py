@@ -21,7 +21,7 @@ LISTS = [
     ("", ["engine/app/*", "engine/python/*", "*/bench/*", "engine/store/*",
           "engine/schedule/batch/*", "engine/world/map_*", "engine/perception/render/training_views.*",
           "engine/perception/render/pictures.*", "engine/core/progress.*", "engine/core/interrupt.*",
-          "engine/core/suggest.*", "engine/core/version.*", "engine/core/sealed_file.*", "engine/core/shipped.*"]),
+          "engine/core/suggest.*", "engine/core/version.*", "engine/core/files/sealed_file.*", "engine/core/files/shipped.*"]),
     ("flight", ["engine/sweep/plan.*"]),
     ("", ["engine/sweep/*"]),
     ("pixels", ["engine/perception/pixels/*", "engine/perception/render/*", "engine/perception/vision/*"]),

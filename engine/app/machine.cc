@@ -14,8 +14,8 @@
 #include <opencv2/core/version.hpp>
 #include <thread>
 
+#include "engine/core/files/shipped.h"
 #include "engine/core/math_library.h"
-#include "engine/core/shipped.h"
 #include "engine/core/threads.h"
 #include "engine/core/version.h"
 #include "kernels/simd_level.h"

@@ -13,13 +13,13 @@
 #include <new>
 #include <system_error>
 
-#include "engine/app/command_slurm.h"
 #include "engine/app/commands.h"
+#include "engine/app/commands/slurm.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
+#include "engine/core/files/utf8.h"
 #include "engine/core/interrupt.h"
 #include "engine/core/message.h"
-#include "engine/core/utf8.h"
 #include "engine/core/version.h"
 #include "engine/store/sqlite.h"
 #include "kernels/simd_level.h"

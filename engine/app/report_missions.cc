@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/app/mission_viewer.h"
+#include "engine/app/pictures/mission_viewer.h"
 #include "engine/core/check.h"
 #include "studies/report/page_choice.h"
 #include "studies/report/web_page.h"

@@ -12,8 +12,8 @@
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/schedule/progress_of_stage.h"
-#include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
+#include "engine/store/shards/gathered_shards.h"
 #include "engine/sweep/plan_text.h"
 #include "studies/report/load.h"
 

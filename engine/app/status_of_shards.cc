@@ -15,7 +15,7 @@
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/store/schema.h"
-#include "engine/store/shards.h"
+#include "engine/store/shards/shards.h"
 #include "engine/store/sqlite.h"
 #include "engine/store/tally.h"
 

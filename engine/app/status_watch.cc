@@ -13,10 +13,10 @@
 #include <thread>
 
 #include "engine/app/commands.h"
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
 #include "engine/core/interrupt.h"
-#include "engine/store/gathered_shards.h"
 #include "engine/store/schema.h"
+#include "engine/store/shards/gathered_shards.h"
 #include "engine/store/tally.h"
 #include "studies/metrics/metrics.h"
 #include "studies/report/load.h"

@@ -9,7 +9,7 @@
 #include "engine/app/words.h"
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
-#include "engine/core/utf8.h"
+#include "engine/core/files/utf8.h"
 #include "engine/sweep/plan_text.h"
 #include "engine/sweep/setting.h"
 

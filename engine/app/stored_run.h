@@ -7,9 +7,9 @@
 
 #include "engine/app/sweep_arguments.h"
 #include "engine/schedule/sweep_runner.h"
-#include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
 #include "engine/store/restored_files.h"
+#include "engine/store/shards/gathered_shards.h"
 
 namespace ed3r::app {
 

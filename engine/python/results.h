@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/store/gathered_shards.h"
 #include "engine/store/reader.h"
+#include "engine/store/shards/gathered_shards.h"
 
 namespace ed3r::python {
 

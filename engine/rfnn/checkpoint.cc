@@ -1,6 +1,6 @@
 #include "engine/rfnn/checkpoint.h"
 
-#include "engine/core/sealed_file.h"
+#include "engine/core/files/sealed_file.h"
 #include "engine/rfnn/curve_bytes.h"
 
 namespace ed3r::rfnn {

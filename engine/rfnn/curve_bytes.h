@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/core/sealed_file.h"
+#include "engine/core/files/sealed_file.h"
 #include "engine/rfnn/training_report.h"
 
 namespace ed3r::rfnn {

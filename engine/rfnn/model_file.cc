@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/sealed_file.h"
+#include "engine/core/files/sealed_file.h"
 #include "engine/core/sha256.h"
 #include "engine/rfnn/curve_bytes.h"
 

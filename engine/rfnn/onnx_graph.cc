@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "engine/core/check.h"
-#include "engine/core/protobuf.h"
+#include "engine/core/files/protobuf.h"
 #include "engine/core/sha256.h"
 
 namespace ed3r::rfnn {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "engine/core/check.h"
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
 #include "engine/core/message.h"
 #include "engine/core/sha256.h"
 

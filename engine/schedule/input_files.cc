@@ -9,7 +9,7 @@
 
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
 #include "engine/core/sha256.h"
 #include "engine/sweep/setting.h"
 #include "engine/world/terrain.h"

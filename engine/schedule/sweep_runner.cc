@@ -12,7 +12,8 @@
 
 #include "engine/agents/strategy.h"
 #include "engine/core/check.h"
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/temporary_file.h"
 #include "engine/core/math_library.h"
 #include "engine/core/suggest.h"
 #include "engine/core/version.h"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/core/temporary.h"
+#include "engine/core/files/temporary_file.h"
 
 namespace ed3r::store {
 

@@ -12,8 +12,8 @@
 #include <system_error>
 
 #include "engine/core/check.h"
-#include "engine/core/file.h"
-#include "engine/core/utf8.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/utf8.h"
 #include "engine/store/sqlite_errors.h"
 
 namespace ed3r::store {

@@ -10,7 +10,7 @@
 
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
-#include "engine/core/shipped.h"
+#include "engine/core/files/shipped.h"
 #include "engine/sweep/arm_id.h"
 #include "engine/sweep/arm_name.h"
 #include "engine/sweep/sweep_file.h"

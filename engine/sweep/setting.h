@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/config/config.h"
-#include "engine/core/yaml_reader.h"
+#include "engine/core/files/yaml_reader.h"
 
 namespace ed3r::sweep {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/core/check.h"
-#include "engine/world/raster_file.h"
+#include "engine/world/files/raster_file.h"
 #include "engine/world/terrain.h"
 
 namespace ed3r::world {

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "engine/core/random.h"
+#include "engine/world/files/stem_map.h"
 #include "engine/world/noise.h"
-#include "engine/world/stem_map.h"
 
 namespace ed3r::world {
 namespace {

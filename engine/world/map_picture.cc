@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "engine/core/check.h"
+#include "engine/world/files/picture_file.h"
 #include "engine/world/map_relief.h"
-#include "engine/world/picture_file.h"
 
 namespace ed3r::world {
 namespace {

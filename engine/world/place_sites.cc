@@ -10,8 +10,8 @@
 
 #include "engine/core/random.h"
 #include "engine/world/bake.h"
+#include "engine/world/files/text_place.h"
 #include "engine/world/sight.h"
-#include "engine/world/text_place.h"
 
 namespace ed3r::world {
 namespace {

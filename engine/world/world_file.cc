@@ -8,8 +8,8 @@
 #include <numbers>
 #include <string_view>
 
-#include "engine/world/stem_map.h"
-#include "engine/world/strict_map.h"
+#include "engine/world/files/stem_map.h"
+#include "engine/world/files/strict_map.h"
 
 namespace ed3r::world {
 namespace {

@@ -8,15 +8,14 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/world/length_unit.h"
+#include "engine/world/files/grid_spec.h"
+#include "engine/world/files/stem_map_spec.h"
+#include "engine/world/files/text_place.h"
 #include "engine/world/scene.h"
-#include "engine/world/text_place.h"
-#include "engine/world/tree_allometry.h"
 
 namespace ed3r::world {
 
@@ -38,19 +37,6 @@ struct GeneratedTerrainSpec {
   std::vector<RidgeSpec> ridges;
 };
 
-// Terrain from a real elevation grid. The area's south-west corner lies offset_m from the centre of the
-// grid's south-west cell; extent_m of the grid is stretched to the area, heights are multiplied by
-// height_scale. What the file tells of its units, scale, offset and masks is applied; length_unit and height_unit
-// say what it does not tell.
-struct GridTerrainSpec {
-  std::string file;  // as the program opens it
-  Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();
-  Eigen::Vector2d extent_m = Eigen::Vector2d::Zero();
-  double height_scale = 1.0;
-  std::optional<LengthUnit> length_unit, height_unit;
-  TextPlace file_place, extent_place;
-};
-
 // Trees from a seed: one per cell of a jittered grid, save in clearings and on steep ground.
 struct GeneratedForestSpec {
   double spacing_m = 8.0;
@@ -58,24 +44,6 @@ struct GeneratedForestSpec {
   double clearing_size_m = 90.0;
   Eigen::Vector2d height_m{8.0, 25.0};
   Eigen::Vector2d crown_radius_m{1.5, 3.5};
-};
-
-// Trees from a stem map, a CSV of a real stand. A rectangle of the stand (offset_m from its south-west
-// corner, extent_m) is tiled over the area, every other tile mirrored; a stand is seldom a rectangle, so
-// choose one that it fills.
-struct StemMapSpec {
-  std::string file;
-  Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();
-  std::optional<Eigen::Vector2d> extent_m;  // none: all of the stand
-  double height_scale = 1.0;                // heights, crown depths and trunks
-  double crown_scale = 1.0;                 // crown radii
-  double min_height_m = 3.0;                // after scaling; lower trees are left out
-  double keep = 1.0;                        // share of the trees that stay, drawn from the seed
-  // What stem_map.h calls a column -> what the file's header calls it.
-  std::map<std::string, std::string> columns;
-  std::optional<ForestKind> estimate_missing;  // crowns and trunks that were not measured (tree_allometry.h)
-  bool tallest_of_a_spot = false;  // of trees at one spot the tallest stays; otherwise they are refused
-  TextPlace file_place, columns_place;
 };
 
 struct ForestSpec {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/core/csv_table.h"
+#include "engine/core/files/csv_table.h"
 #include "studies/metrics/metrics.h"
 #include "studies/metrics/number_text.h"
 

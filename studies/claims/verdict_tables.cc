@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/csv_table.h"
+#include "engine/core/files/csv_table.h"
 #include "studies/claims/equivalence.h"
 #include "studies/metrics/number_text.h"
 #include "studies/paper/arms.h"

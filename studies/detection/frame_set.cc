@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "engine/core/check.h"
-#include "engine/core/csv_table.h"
-#include "engine/core/file.h"
+#include "engine/core/files/csv_table.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/utf8.h"
 #include "engine/core/sha256.h"
-#include "engine/core/utf8.h"
-#include "engine/world/picture_file.h"
+#include "engine/world/files/picture_file.h"
 #include "studies/detection/npy.h"
 
 namespace ed3r::detection {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "engine/core/check.h"
-#include "engine/core/csv_table.h"
-#include "engine/core/file.h"
+#include "engine/core/files/csv_table.h"
+#include "engine/core/files/file.h"
 #include "engine/store/columns.h"
 #include "engine/store/words.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
 #include "engine/store/reader.h"
 
 namespace ed3r::exports {

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "engine/core/check.h"
-#include "engine/core/file.h"
-#include "engine/core/shipped.h"
-#include "engine/core/temporary.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/shipped.h"
+#include "engine/core/files/temporary_file.h"
 
 extern char** environ;
 

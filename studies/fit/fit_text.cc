@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "engine/core/check.h"
-#include "engine/core/end_mark.h"
-#include "engine/core/file.h"
-#include "engine/core/remove_file.h"
+#include "engine/core/files/end_mark.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/remove_file.h"
 
 namespace ed3r::fit {
 namespace {

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "engine/core/check.h"
-#include "engine/core/utf8.h"
+#include "engine/core/files/utf8.h"
 #include "studies/fit/ground_check.h"
 #include "studies/fit/unit_check.h"
 

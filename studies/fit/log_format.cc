@@ -9,9 +9,9 @@
 
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/yaml_reader.h"
 #include "engine/core/suggest.h"
-#include "engine/core/yaml_reader.h"
 
 namespace ed3r::fit {
 namespace {

@@ -10,7 +10,7 @@
 // or the height above take-off is below 0.5 m.
 #pragma once
 
-#include "engine/core/csv_table.h"
+#include "engine/core/files/csv_table.h"
 #include "studies/flight_logs/log_table.h"
 
 namespace ed3r::flight_logs {

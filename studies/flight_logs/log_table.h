@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/core/csv_table.h"
+#include "engine/core/files/csv_table.h"
 
 namespace ed3r::flight_logs {
 

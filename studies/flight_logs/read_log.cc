@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/core/check.h"
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
 #include "engine/core/message.h"
 #include "studies/flight_logs/airdata_log.h"
 #include "studies/flight_logs/ardupilot_log.h"

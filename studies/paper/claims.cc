@@ -7,7 +7,7 @@
 #include <set>
 
 #include "engine/core/check.h"
-#include "engine/core/csv_table.h"
+#include "engine/core/files/csv_table.h"
 
 namespace ed3r::paper {
 namespace {

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "engine/core/end_mark.h"
+#include "engine/core/files/end_mark.h"
 #include "studies/perception/profile_fit.h"
 
 namespace ed3r::perception_fit {

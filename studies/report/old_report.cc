@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/file.h"
-#include "engine/core/remove_file.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/remove_file.h"
 #include "studies/report/report.h"
 #include "studies/report/web_page.h"
 

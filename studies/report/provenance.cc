@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <sstream>
 
-#include "engine/core/file.h"
-#include "engine/core/utf8.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/utf8.h"
 #include "engine/store/reader.h"
 #include "engine/store/recipe.h"
 

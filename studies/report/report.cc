@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "engine/core/check.h"
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
 #include "engine/store/checksums.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/paper/arms.h"

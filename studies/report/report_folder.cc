@@ -5,8 +5,9 @@
 #include <filesystem>
 
 #include "engine/core/check.h"
-#include "engine/core/file.h"
-#include "engine/core/remove_file.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/remove_file.h"
+#include "engine/core/files/temporary_file.h"
 #include "engine/store/directory_lock.h"
 #include "studies/figures/draw.h"
 #include "studies/figures/figure_data.h"

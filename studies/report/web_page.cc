@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "engine/core/file.h"
-#include "engine/core/shipped.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/shipped.h"
 #include "studies/report/page_parts.h"
 
 namespace ed3r::report {

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "engine/core/csv_table.h"
+#include "engine/core/files/csv_table.h"
 #include "studies/metrics/number_text.h"
 #include "studies/tables/paper_cell.h"
 

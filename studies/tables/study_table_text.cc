@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/core/csv_table.h"
+#include "engine/core/files/csv_table.h"
 #include "studies/metrics/number_text.h"
 #include "studies/tables/layout.h"
 #include "studies/tables/paper_cell.h"

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "engine/core/csv_table.h"
+#include "engine/core/files/csv_table.h"
 #include "studies/metrics/number_text.h"
 #include "studies/statistics/holm.h"
 #include "studies/tables/layout.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "engine/core/csv_table.h"
+#include "engine/core/files/csv_table.h"
 #include "engine/sweep/arm_id.h"
 #include "studies/claims/verdict_tables.h"
 #include "studies/tables/layout.h"

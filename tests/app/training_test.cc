@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "engine/core/csv_table.h"
+#include "engine/core/files/csv_table.h"
 #include "tests/app/command.h"
 
 namespace ed3r::app {

@@ -90,7 +90,7 @@ class IdentitiesTest(unittest.TestCase):
         self.assertEqual(self.changed_by(weights.relative_to(self.root), "x"), ["pixels"])
 
     def test_commands_reports_and_the_store_decide_nothing(self):
-        for path in ("engine/app/command_run.cc", "engine/store/merge.cc", "studies/report/html.cc",
+        for path in ("engine/app/commands/run.cc", "engine/store/shards/merge.cc", "studies/report/html.cc",
                      "engine/sweep/yaml_reader.cc", "engine/world/map_picture.cc"):
             self.assertEqual(self.changed_by(path, "int x;\n"), [], path)
 

@@ -1,4 +1,4 @@
-#include "engine/core/csv_table.h"
+#include "engine/core/files/csv_table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
 
 #include <gtest/gtest.h>
 #include <sys/inotify.h>
@@ -15,7 +15,7 @@
 #include <iterator>
 
 #include "engine/core/check.h"
-#include "engine/core/temporary.h"
+#include "engine/core/files/temporary_file.h"
 
 namespace ed3r {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/file.h"
-#include "engine/core/temporary.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/temporary_file.h"
 
 namespace ed3r {
 namespace {

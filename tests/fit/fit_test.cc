@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "engine/core/check.h"
-#include "engine/core/file.h"
-#include "engine/core/yaml_reader.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/yaml_reader.h"
 #include "studies/fit/fit_text.h"
 
 namespace ed3r::fit {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
 #include "studies/fit/fit.h"
 #include "studies/fit/fit_text.h"
 #include "tests/flight_logs/complaint.h"

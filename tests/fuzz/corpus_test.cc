@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
 #include "tests/fuzz/targets.h"
 
 namespace ed3r {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "engine/core/check.h"
-#include "engine/core/sealed_file.h"
+#include "engine/core/files/sealed_file.h"
 #include "engine/perception/vision/model_file.h"
 #include "engine/perception/vision/onnx_external.h"
 #include "engine/perception/vision/onnx_gate.h"
@@ -24,10 +24,10 @@
 #include "engine/store/schema.h"
 #include "engine/sweep/setting.h"
 #include "engine/sweep/sweep_file.h"
-#include "engine/world/jpeg_check.h"
-#include "engine/world/picture_file.h"
-#include "engine/world/png_pixels.h"
-#include "engine/world/stem_map.h"
+#include "engine/world/files/jpeg_check.h"
+#include "engine/world/files/picture_file.h"
+#include "engine/world/files/png_pixels.h"
+#include "engine/world/files/stem_map.h"
 #include "engine/world/terrain.h"
 #include "engine/world/world_file.h"
 #include "studies/detection/npy.h"

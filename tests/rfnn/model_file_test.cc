@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "engine/core/check.h"
-#include "engine/core/sealed_file.h"
+#include "engine/core/files/sealed_file.h"
 #include "engine/core/sha256.h"
 #include "tests/rfnn/toys.h"
 

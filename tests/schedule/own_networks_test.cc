@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "engine/core/check.h"
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
 #include "engine/core/random.h"
 #include "engine/schedule/sweep_runner.h"
 #include "engine/store/digest.h"

@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "engine/store/columns.h"
-#include "engine/store/merge.h"
 #include "engine/store/seals.h"
+#include "engine/store/shards/merge.h"
 #include "tests/store/store_fixture.h"
 
 namespace ed3r::store {

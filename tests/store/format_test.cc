@@ -3,7 +3,7 @@
 #include <sqlite3.h>
 
 #include "engine/store/checksums.h"
-#include "engine/store/merge.h"
+#include "engine/store/shards/merge.h"
 #include "tests/store/store_fixture.h"
 
 namespace ed3r::store {

@@ -2,8 +2,8 @@
 #include "engine/store/growth.h"
 
 #include "engine/config/parameters.h"
-#include "engine/store/joined_missions.h"
-#include "engine/store/merge.h"
+#include "engine/store/shards/joined_missions.h"
+#include "engine/store/shards/merge.h"
 #include "tests/store/store_fixture.h"
 
 namespace ed3r::store {

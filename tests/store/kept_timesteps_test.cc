@@ -2,7 +2,7 @@
 
 #include "engine/store/damage.h"
 #include "engine/store/difference.h"
-#include "engine/store/merge.h"
+#include "engine/store/shards/merge.h"
 #include "engine/store/sqlite.h"
 #include "tests/store/store_fixture.h"
 

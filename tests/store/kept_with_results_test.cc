@@ -5,8 +5,8 @@
 #include <iterator>
 
 #include "engine/core/sha256.h"
-#include "engine/store/merge.h"
 #include "engine/store/restored_files.h"
+#include "engine/store/shards/merge.h"
 #include "tests/store/store_fixture.h"
 
 namespace ed3r::store {

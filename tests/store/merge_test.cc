@@ -1,4 +1,4 @@
-#include "engine/store/merge.h"
+#include "engine/store/shards/merge.h"
 
 #include <sys/wait.h>
 
@@ -6,7 +6,7 @@
 #include <csignal>
 #include <memory>
 
-#include "engine/store/joined_missions.h"
+#include "engine/store/shards/joined_missions.h"
 #include "engine/store/sqlite.h"
 #include "tests/store/store_fixture.h"
 

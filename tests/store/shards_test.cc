@@ -1,5 +1,5 @@
 // Many stores as one: tallied in place, merged, and a finished one remembered.
-#include "engine/store/shards.h"
+#include "engine/store/shards/shards.h"
 
 #include <algorithm>
 #include <fstream>
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "engine/store/finished.h"
-#include "engine/store/merge.h"
+#include "engine/store/shards/merge.h"
 #include "engine/store/tally.h"
 #include "tests/store/store_fixture.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/csv_table.h"
+#include "engine/core/files/csv_table.h"
 
 namespace ed3r {
 

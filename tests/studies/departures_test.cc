@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "engine/config/parameters.h"
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
 #include "engine/core/sha256.h"
 #include "engine/sweep/sweep_file.h"
 #include "engine/world/world_file.h"

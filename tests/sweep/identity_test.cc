@@ -6,7 +6,7 @@
 #include <functional>
 #include <set>
 
-#include "engine/core/shipped.h"
+#include "engine/core/files/shipped.h"
 #include "tests/sweep/scratch.h"
 
 namespace ed3r::sweep {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "engine/core/yaml_reader.h"
+#include "engine/core/files/yaml_reader.h"
 #include "tests/sweep/scratch.h"
 
 namespace ed3r::sweep {

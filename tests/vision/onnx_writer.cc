@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstring>
 
-#include "engine/core/protobuf.h"
+#include "engine/core/files/protobuf.h"
 #include "engine/perception/vision/onnx_fields.h"
 
 namespace ed3r::test {

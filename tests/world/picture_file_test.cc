@@ -1,5 +1,5 @@
 // Pictures of cameras and tools: each kind in a stated way, and none of which a part is missing.
-#include "engine/world/picture_file.h"
+#include "engine/world/files/picture_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

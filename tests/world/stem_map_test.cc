@@ -1,5 +1,5 @@
 // Stem maps as people have them: other separators, names, units, missing crowns, trees twice, degrees.
-#include "engine/world/stem_map.h"
+#include "engine/world/files/stem_map.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "engine/core/check.h"
-#include "engine/world/picture_file.h"
+#include "engine/world/files/picture_file.h"
 
 namespace ed3r::perception {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "engine/config/parameters.h"
 #include "engine/core/check.h"
-#include "engine/core/file.h"
+#include "engine/core/files/file.h"
 #include "engine/core/sha256.h"
 #include "engine/perception/vision/builtin_detector.h"
 #include "engine/perception/vision/frame_detector.h"

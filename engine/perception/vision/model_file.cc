@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/core/check.h"
-#include "engine/core/sealed_file.h"
+#include "engine/core/files/sealed_file.h"
 
 namespace ed3r::perception {
 namespace {

@@ -1,7 +1,7 @@
 // Detector networks on disk and in the program: one sealed file with architecture, weights, integer scales,
 // calibration and provenance. scripts/train_detector.py writes the same format.
 //
-// Payload, little-endian (engine/core/sealed_file.h: u32, f64, text and lists with a u64 count in front):
+// Payload, little-endian (engine/core/files/sealed_file.h: u32, f64, text and lists with a u64 count in front):
 //   text name | u32 width, height, colours | f64 LeakyReLU slope
 //   u32 convolutions, each u32 channels, kernel, stride | u32 fully connected layers, each u32 outputs
 //   u32 pixel offset | f64 pixel scale | for each layer: f32 list weights, f32 list biases

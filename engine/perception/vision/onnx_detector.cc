@@ -18,7 +18,7 @@
 #include "engine/perception/vision/onnx_rewrite.h"
 #include "engine/perception/vision/pool.h"
 #include "engine/perception/vision/resize.h"
-#include "engine/world/quiet_opencv.h"
+#include "engine/world/files/quiet_opencv.h"
 
 namespace ed3r::perception {
 namespace {

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "engine/core/check.h"
-#include "engine/core/file.h"
-#include "engine/core/protobuf.h"
+#include "engine/core/files/file.h"
+#include "engine/core/files/protobuf.h"
 #include "engine/perception/vision/onnx_fields.h"
 
 namespace ed3r::perception {

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "engine/core/check.h"
-#include "engine/core/protobuf.h"
+#include "engine/core/files/protobuf.h"
 #include "engine/perception/vision/onnx_fields.h"
 
 namespace ed3r::perception {

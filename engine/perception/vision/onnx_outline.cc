@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "engine/core/protobuf.h"
+#include "engine/core/files/protobuf.h"
 #include "engine/perception/vision/onnx_fields.h"
 
 namespace ed3r::perception {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/core/check.h"
-#include "engine/core/protobuf.h"
+#include "engine/core/files/protobuf.h"
 #include "engine/perception/vision/onnx_fields.h"
 #include "engine/perception/vision/onnx_mend.h"
 #include "engine/perception/vision/onnx_node.h"

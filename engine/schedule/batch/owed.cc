@@ -11,7 +11,7 @@
 #include "engine/schedule/training_stage.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
-#include "engine/store/shards.h"
+#include "engine/store/shards/shards.h"
 
 namespace ed3r::schedule {
 namespace {
