@@ -67,6 +67,8 @@ class Arranged : public ShapeStep {
     for (std::size_t i = 0; i < out.size(); ++i) {
       if (out[i] == 0 && i < X().size()) out[i] = X()[i];
       if (out[i] != -1) known *= out[i];
+      if (known <= 0 || known > kMostElements)
+        Refuse(fmt::format("makes {}", Text(out)), "as many numbers as there are");
     }
     const std::int64_t all = Count(X());
     const auto open = std::count(out.begin(), out.end(), -1);
@@ -140,7 +142,8 @@ class Arranged : public ShapeStep {
     if (parts.empty() && side % count == 0) parts.assign(static_cast<std::size_t>(count), side / count);
     if (std::ssize(parts) != count || count < 2 ||
         node_.Number("num_outputs", static_cast<double>(count)) != static_cast<double>(count) ||
-        Count(parts) <= 0 || std::accumulate(parts.begin(), parts.end(), std::int64_t{0}) != side)
+        std::any_of(parts.begin(), parts.end(), [](std::int64_t part) { return part <= 0; }) ||
+        std::accumulate(parts.begin(), parts.end(), std::int64_t{0}) != side)
       Refuse(fmt::format("splits side {} of {} into {} parts {}", axis, Text(X()), count, Text(parts)),
              "two or more that fill it");
     std::vector<OnnxSides> outs(parts.size(), X());
@@ -207,6 +210,8 @@ class Arranged : public ShapeStep {
     const std::vector<double> asked = Asked();
     OnnxSides out = X();
     for (std::size_t i = 0; i < 4; ++i) {
+      if (!(asked[i] >= 1.0 && asked[i] < static_cast<double>(kMostElements)))
+        Refuse(fmt::format("makes {:g} of a side", asked[i]), "1 or more");
       constexpr double kSingle = 1e-5;  // of a scale
       const bool whole = std::abs(asked[i] - std::round(asked[i])) < kSingle * asked[i];
       out[i] = static_cast<std::int64_t>(whole ? std::round(asked[i]) : std::floor(asked[i]));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 #include <string>
@@ -24,6 +25,8 @@ inline std::int64_t Count(const OnnxSides& sides, std::size_t from, std::size_t 
 inline std::int64_t Count(const OnnxSides& sides) { return Count(sides, 0, sides.size()); }
 
 inline std::string Text(const OnnxSides& sides) { return fmt::format("[{}]", fmt::join(sides, ", ")); }
+
+constexpr std::int64_t kMostElements = 1 << 28;  // of a tensor: a gigabyte of floats
 
 class ShapeStep {
  public:
@@ -50,6 +53,13 @@ class ShapeStep {
     return kinds;
   }
 
+  void CheckSize(const OnnxSides& sides) const {
+    std::int64_t elements = 1;
+    for (const std::int64_t side : sides)
+      if (side < 1 || side > kMostElements || (elements *= side) > kMostElements)
+        Refuse(fmt::format("gives {}", Text(sides)), fmt::format("at most {} elements", kMostElements));
+  }
+
  protected:
   static char KindOf(std::uint64_t type) {
     if (type == onnx::kFloat) return 'c';
@@ -71,16 +81,22 @@ class ShapeStep {
     return found != sides_.end() ? found->second : around_.constants.at(node_.inputs[input]).sides;
   }
 
+  // Files may hold any number; beyond the largest tensor all are alike, and their sums and products stay in 64 bits.
+  static std::vector<std::int64_t> Bounded(std::vector<std::int64_t> numbers) {
+    for (std::int64_t& number : numbers) number = std::clamp(number, -2 * kMostElements, 2 * kMostElements);
+    return numbers;
+  }
+
   // Of an attribute, or of an input of whole numbers; nothing where neither is told.
   std::vector<std::int64_t> Numbers(std::size_t input, const std::string& attribute) const {
-    if (!node_.HasInput(input)) return node_.Numbers(attribute);
+    if (!node_.HasInput(input)) return Bounded(node_.Numbers(attribute));
     const auto made = whole_.find(node_.inputs[input]);
-    if (made != whole_.end()) return made->second;
+    if (made != whole_.end()) return Bounded(made->second);
     const OnnxConstant* constant = Constant(input);
     if (constant == nullptr || (constant->whole.empty() && Count(constant->sides) != 0))
       Refuse(fmt::format("takes '{}', which are no constant whole numbers", node_.inputs[input]),
              "up to 64 of int64 or int32");
-    return constant->whole;
+    return Bounded(constant->whole);
   }
 
   std::size_t Axis(std::int64_t told, std::size_t rank) const {

@@ -59,6 +59,7 @@ void OnnxShapes::Add(const OnnxNode& node) {
   if (rule == OnnxRule::kShape || rule == OnnxRule::kNumbers) whole_[node.outputs.at(0)] = WholeNumbers(step);
   std::vector<OnnxSides> outputs = ComputedSides(step, rule);
   if (outputs.empty()) outputs = ArrangedSides(step, rule);
+  for (const OnnxSides& sides : outputs) step.CheckSize(sides);
   for (std::size_t i = 0; i < outputs.size() && i < node.outputs.size(); ++i)
     sides_[node.outputs[i]] = outputs[i];
 }
