@@ -34,6 +34,16 @@ std::optional<std::array<std::uint64_t, 4>> ShapeOf(std::string_view header) {
   return ended ? std::optional(shape) : std::nullopt;
 }
 
+// Python takes the last of a key's values.
+bool HasKeysOnce(std::string_view header) {
+  for (const std::string_view key : {"descr", "fortran_order", "shape"}) {
+    const std::size_t found = header.find(key);
+    if (found == std::string_view::npos || header.find(key, found + 1) != std::string_view::npos)
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 perception::FrameStack ParseNpy(std::string_view bytes, const std::string& name) {
@@ -44,7 +54,8 @@ perception::FrameStack ParseNpy(std::string_view bytes, const std::string& name)
       static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
   const std::string_view header = bytes.substr(kStart, length);
   const auto shape = ShapeOf(header);
-  if (!shape || (*shape)[3] != 3 || header.find("'descr': '|u1'") == std::string_view::npos ||
+  if (!HasKeysOnce(header) || !shape || (*shape)[3] != 3 ||
+      header.find("'descr': '|u1'") == std::string_view::npos ||
       header.find("'fortran_order': False") == std::string_view::npos)
     throw UserError(
         fmt::format("{}: a uint8 array of frames x height x width x 3 is wanted, not {}", name, header));

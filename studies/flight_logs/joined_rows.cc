@@ -16,15 +16,15 @@ bool OnGround(const TimeSeries& armed, const TimeSeries& landed, double time_s) 
   return !landed.empty() && landed.Last(time_s, 1.0 - landed.value(0)) >= 0.5;
 }
 
-// Samples out of order by a moment are passed over; a clock that starts again would put two flights into one.
-void CheckClock(const std::string& path, const Battery& battery) {
-  const TimeSeries& clock = battery.voltage_v;
+// Messages may come out of order by a moment; a clock that starts again would put two flights into one, and a sample whose stamp is
+// far ahead would be taken for one of then.
+void CheckClock(const std::string& path, const std::string& source, const TimeSeries& clock) {
   if (clock.back_s() <= kMaxJoinS) return;
   throw UserError(
       fmt::format("{}: the clock of {} runs back from {:.3f} to {:.3f} s: a restart, or two logs in one "
                   "file; give each log as a "
                   "file of its own",
-                  path, battery.source, clock.back_from_s(), clock.back_from_s() - clock.back_s()));
+                  path, source, clock.back_from_s(), clock.back_from_s() - clock.back_s()));
 }
 
 constexpr double kMinFlightS = 5.0;  // less is a motor test or a bench
@@ -46,7 +46,10 @@ DecodedLog JoinRows(const std::string& path, LogKind kind, const ChosenBattery& 
   DecodedLog log{.path = path, .kind = kind, .columns = {}, .on_ground = {}, .lines = {}, .notes = {}};
   for (const char* name : {"time_s", "battery_voltage_v", "battery_current_a"})
     log.columns.push_back({name, {}});
-  for (const NamedSeries& source : series) log.columns.push_back({source.name, {}});
+  for (const NamedSeries& source : series) {
+    CheckClock(path, source.name, *source.series);
+    log.columns.push_back({source.name, {}});
+  }
   const bool states = !armed.empty() || !landed.empty();
   int apart = 0;
   for (std::size_t i = 0; i < battery.times_s.size(); ++i) {
@@ -83,7 +86,7 @@ ChosenBattery BatteryInFlight(const std::string& path, const std::map<int, Batte
                               const TimeSeries& armed, const TimeSeries& landed, const LogReading& reading) {
   std::vector<Battery> all;
   for (const auto& [id, battery] : batteries) {
-    CheckClock(path, battery);
+    CheckClock(path, battery.source, battery.voltage_v);
     all.push_back(battery);
   }
   CheckPowerMeasured(path, all);

@@ -13,15 +13,14 @@ constexpr double kStampS = 1e-6;  // stamps are whole microseconds; closer is th
 
 void TimeSeries::Add(double time_s, double value) {
   if (!std::isfinite(time_s)) return;
-  if (!times_s_.empty() && time_s <= times_s_.back()) {
-    if (times_s_.back() - time_s > back_s_) {
-      back_s_ = times_s_.back() - time_s;
-      back_from_s_ = times_s_.back();
-    }
-    return;
+  if (!times_s_.empty() && times_s_.back() - time_s > back_s_) {
+    back_s_ = times_s_.back() - time_s;
+    back_from_s_ = times_s_.back();
   }
-  times_s_.push_back(time_s);
-  values_.push_back(value);
+  const auto after = std::lower_bound(times_s_.begin(), times_s_.end(), time_s);
+  if (after != times_s_.end() && *after == time_s) return;
+  values_.insert(values_.begin() + (after - times_s_.begin()), value);
+  times_s_.insert(after, time_s);
 }
 
 double TimeSeries::Nearest(double time_s) const {

@@ -14,10 +14,10 @@ inline constexpr double kMaxJoinS = 1.0;
 
 class TimeSeries {
  public:
-  // Samples come in the order of the file; a stamp that does not come after the one before is passed over.
+  // A sample belongs where its stamp says, wherever it stands in the file; of two with one stamp the first counts.
   void Add(double time_s, double value);
 
-  // The farthest that a stamp passed over lies before the one before it, and that one; 0 where none does.
+  // The farthest that a stamp lies before the latest one that stands ahead of it in the file, and that one; 0 where none does.
   double back_s() const { return back_s_; }
   double back_from_s() const { return back_from_s_; }
 

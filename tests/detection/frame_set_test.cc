@@ -69,6 +69,8 @@ TEST_F(FrameSetTest, RefusesFilesThatDoNotFit) {
   ExpectRefusal("frames x height x width x 3");
   WriteNpy("(2, 2, 3, 3)", 36, "<f4");
   ExpectRefusal("uint8");
+  WriteNpy("(2, 2, 3, 3)", 36, "|u1', 'descr': '|i1");
+  ExpectRefusal("uint8");
   WriteNpy("(3, 2, 3, 3)", 54);
   ExpectRefusal("2 rows for 3 frames");
   std::ofstream(folder_ / "frames.npy") << "nothing";

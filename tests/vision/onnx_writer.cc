@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "engine/core/files/protobuf.h"
-#include "engine/perception/vision/onnx_fields.h"
+#include "engine/perception/vision/onnx/fields.h"
 
 namespace ed3r::test {
 namespace {

@@ -274,6 +274,8 @@ TEST_F(RasterReadingTest, ATextGridsHeaderSaysEachThingOnce) {
             "'g.asc': line 4: 'CELLSIZE' is there twice; leave one out");
   EXPECT_EQ(says("dx 10\ndy 10\ncellsize 30\n", "0"),
             "'g.asc': line 5: 'cellsize' beside 'dx' or 'dy'; leave one out");
+  EXPECT_EQ(says("", "0\ncellsize 10\n"),
+            "'g.asc': line 6: 'cellsize' stands below heights; put it above them");
   EXPECT_EQ(says("cellsize 10\n", "4294967298"),
             "'g.asc': line 6: '4294967298' is no height; allowed: -2147483648 .. 2147483647");
   std::string text = "ncols 4294967308\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 10\n0";

@@ -9,8 +9,8 @@
 #include "engine/perception/vision/builtin_detector.h"
 #include "engine/perception/vision/frame_detector.h"
 #include "engine/perception/vision/model_file.h"
+#include "engine/perception/vision/onnx/external.h"
 #include "engine/perception/vision/onnx_detector.h"
-#include "engine/perception/vision/onnx_external.h"
 
 namespace ed3r::perception {
 namespace {

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "engine/core/check.h"
-#include "engine/perception/vision/onnx_gate.h"
-#include "engine/perception/vision/onnx_outline.h"
-#include "engine/perception/vision/onnx_reading.h"
-#include "engine/perception/vision/onnx_reason.h"
-#include "engine/perception/vision/onnx_rewrite.h"
+#include "engine/perception/vision/onnx/gate.h"
+#include "engine/perception/vision/onnx/outline.h"
+#include "engine/perception/vision/onnx/reading.h"
+#include "engine/perception/vision/onnx/reason.h"
+#include "engine/perception/vision/onnx/rewrite.h"
 #include "engine/perception/vision/pool.h"
 #include "engine/perception/vision/resize.h"
 #include "engine/world/files/quiet_opencv.h"

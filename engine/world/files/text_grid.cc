@@ -62,6 +62,7 @@ class TextGrid {
   // GDAL takes a word among the heights for 0, the first of two keys, and what is left of a number in 32 bits.
   std::string Hear(std::string_view word) {
     if (const std::string name = HeaderName(word); !name.empty()) {
+      if (heights_ + in_line_ > 0) return fmt::format("'{}' stands below heights; put it above them", word);
       if (!names_.insert(name).second) return fmt::format("'{}' is there twice; leave one out", word);
       if (names_.contains("cellsize") && (names_.contains("dx") || names_.contains("dy")))
         return "'cellsize' beside 'dx' or 'dy'; leave one out";

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "engine/perception/vision/onnx_outline.h"
-#include "engine/perception/vision/onnx_reading.h"
+#include "engine/perception/vision/onnx/outline.h"
+#include "engine/perception/vision/onnx/reading.h"
 
 namespace ed3r::perception {
 

@@ -1,4 +1,4 @@
-#include "engine/perception/vision/onnx_gate.h"
+#include "engine/perception/vision/onnx/gate.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/files/protobuf.h"
-#include "engine/perception/vision/onnx_fields.h"
+#include "engine/perception/vision/onnx/fields.h"
 
 namespace ed3r::perception {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/perception/vision/onnx_mend.h"
+#include "engine/perception/vision/onnx/mend.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/files/protobuf.h"
-#include "engine/perception/vision/onnx_fields.h"
+#include "engine/perception/vision/onnx/fields.h"
 
 namespace ed3r::perception {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/perception/vision/onnx_shape_step.h"
+#include "engine/perception/vision/onnx/shape_step.h"
 
 namespace ed3r::perception {
 namespace {

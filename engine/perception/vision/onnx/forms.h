@@ -1,10 +1,10 @@
-// The forms of ONNX operators that have been checked against the standard as OpenCV 4.6 reads them (and as onnx_mend.h puts
+// The forms of ONNX operators that have been checked against the standard as OpenCV 4.6 reads them (and as mend.h puts
 // them for it). What is not in the table is refused: OpenCV reads many other forms otherwise, and says nothing.
 #pragma once
 
 #include <string>
 
-#include "engine/perception/vision/onnx_node.h"
+#include "engine/perception/vision/onnx/node.h"
 
 namespace ed3r::perception {
 
@@ -38,9 +38,9 @@ enum class OnnxRule {
   kNumbers
 };
 
-// The rule of the node's form. `kinds`: a letter for each input: x computed from the frame, c a constant of float, i
-// of whole numbers, o of another type, n whole numbers from shapes, - left out. Throws UserError that begins with `name` for what is not in the table: one line with the node,
-// what was found and what is allowed.
+// The rule of the node's form. `kinds`: a letter for each input: x computed from the frame, c a constant of float, i of whole
+// numbers, o of another type, n whole numbers from shapes, - left out. Throws UserError that begins with `name` for what is not in
+// the table: one line with the node, what was found and what is allowed.
 OnnxRule RuleOf(const OnnxNode& node, const std::string& kinds, std::int64_t opset, const std::string& name);
 
 }  // namespace ed3r::perception

@@ -1,4 +1,4 @@
-// Steps in the forms of onnx_forms.h that OpenCV 4.6 reads otherwise than the standard says, put so that both agree.
+// Steps in the forms of forms.h that OpenCV 4.6 reads otherwise than the standard says, put so that both agree.
 //
 //   Gemm          unless transB is 1 the weights are taken the wrong way round: an error for most, wrong numbers for square
 //                 ones
@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/perception/vision/onnx_node.h"
+#include "engine/perception/vision/onnx/node.h"
 
 namespace ed3r::perception {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "engine/config/detector.h"
-#include "engine/perception/vision/onnx_outline.h"
+#include "engine/perception/vision/onnx/outline.h"
 
 namespace ed3r::perception {
 

@@ -1,8 +1,8 @@
-#include "engine/perception/vision/onnx_shapes.h"
+#include "engine/perception/vision/onnx/shapes.h"
 
 #include <algorithm>
 
-#include "engine/perception/vision/onnx_shape_step.h"
+#include "engine/perception/vision/onnx/shape_step.h"
 
 namespace ed3r::perception {
 namespace {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "engine/core/check.h"
-#include "engine/perception/vision/onnx_fields.h"
-#include "engine/perception/vision/onnx_forms.h"
-#include "engine/perception/vision/onnx_shapes.h"
+#include "engine/perception/vision/onnx/fields.h"
+#include "engine/perception/vision/onnx/forms.h"
+#include "engine/perception/vision/onnx/shapes.h"
 
 namespace ed3r::perception {
 

@@ -1,4 +1,4 @@
-#include "engine/perception/vision/onnx_rewrite.h"
+#include "engine/perception/vision/onnx/rewrite.h"
 
 #include <fmt/format.h>
 #include <opencv2/core/cvdef.h>
@@ -11,10 +11,10 @@
 
 #include "engine/core/check.h"
 #include "engine/core/files/protobuf.h"
-#include "engine/perception/vision/onnx_fields.h"
-#include "engine/perception/vision/onnx_mend.h"
-#include "engine/perception/vision/onnx_node.h"
-#include "engine/perception/vision/onnx_shapes.h"
+#include "engine/perception/vision/onnx/fields.h"
+#include "engine/perception/vision/onnx/mend.h"
+#include "engine/perception/vision/onnx/node.h"
+#include "engine/perception/vision/onnx/shapes.h"
 
 namespace ed3r::perception {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/perception/vision/onnx_reason.h"
+#include "engine/perception/vision/onnx/reason.h"
 
 #include <fmt/format.h>
 

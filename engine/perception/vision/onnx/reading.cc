@@ -1,4 +1,4 @@
-#include "engine/perception/vision/onnx_reading.h"
+#include "engine/perception/vision/onnx/reading.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "engine/core/check.h"
-#include "engine/perception/vision/onnx_fields.h"
+#include "engine/perception/vision/onnx/fields.h"
 
 namespace ed3r::perception {
 namespace {

@@ -1,11 +1,11 @@
-#include "engine/perception/vision/onnx_node.h"
+#include "engine/perception/vision/onnx/node.h"
 
 #include <fmt/format.h>
 
 #include <cstring>
 
 #include "engine/core/files/protobuf.h"
-#include "engine/perception/vision/onnx_fields.h"
+#include "engine/perception/vision/onnx/fields.h"
 
 namespace ed3r::perception {
 namespace {

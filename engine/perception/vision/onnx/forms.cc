@@ -1,4 +1,4 @@
-#include "engine/perception/vision/onnx_forms.h"
+#include "engine/perception/vision/onnx/forms.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "engine/perception/vision/onnx_external.h"
+#include "engine/perception/vision/onnx/external.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "engine/core/check.h"
 #include "engine/core/files/file.h"
 #include "engine/core/files/protobuf.h"
-#include "engine/perception/vision/onnx_fields.h"
+#include "engine/perception/vision/onnx/fields.h"
 
 namespace ed3r::perception {
 namespace {

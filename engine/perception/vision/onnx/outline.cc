@@ -1,11 +1,11 @@
-#include "engine/perception/vision/onnx_outline.h"
+#include "engine/perception/vision/onnx/outline.h"
 
 #include <fmt/format.h>
 
 #include <array>
 
 #include "engine/core/files/protobuf.h"
-#include "engine/perception/vision/onnx_fields.h"
+#include "engine/perception/vision/onnx/fields.h"
 
 namespace ed3r::perception {
 namespace {

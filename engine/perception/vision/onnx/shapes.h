@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/perception/vision/onnx_node.h"
+#include "engine/perception/vision/onnx/node.h"
 
 namespace ed3r::perception {
 
@@ -21,7 +21,7 @@ class OnnxShapes {
     sides_[input] = sides;
   }
 
-  // Steps come in the order in which they run. Throws UserError for forms that are not in the table of onnx_forms.h, and
+  // Steps come in the order in which they run. Throws UserError for forms that are not in the table of forms.h, and
   // for shapes with which OpenCV reads them otherwise than the standard.
   void Add(const OnnxNode& node);
 
