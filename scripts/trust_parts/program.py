@@ -73,15 +73,15 @@ class Trial:
         self._fresh += 1
         return self.folder / f"{name}-{self._fresh}"
 
-    def ed3r(self, *arguments, env=None, limits=None, cwd=None):
-        """Runs the program to its end. `limits`: {resource.RLIMIT_...: value}."""
+    def ed3r(self, *arguments, env=None, limits=None, cwd=None, before=()):
+        """Runs the program to its end. `limits`: {resource.RLIMIT_...: value}; `before`: a command that runs it."""
 
         def set_limits():
             for kind, value in (limits or {}).items():
                 resource.setrlimit(kind, (value, value))
 
         try:
-            done = subprocess.run([self.binary, *map(str, arguments)], capture_output=True, timeout=PATIENCE_S, cwd=cwd,
+            done = subprocess.run([*before, self.binary, *map(str, arguments)], capture_output=True, timeout=PATIENCE_S, cwd=cwd,
                                   env={**os.environ, **(env or {})}, preexec_fn=set_limits, check=False)
         except subprocess.TimeoutExpired:
             return Said(None, "", "")
