@@ -104,37 +104,44 @@ static void Hold(void) {
   while (access(held, F_OK) == 0) nanosleep(&(struct timespec){0, 2000000}, NULL);
 }
 
-// Lets the call happen, and says otherwise: a descriptor is closed whatever close() returns.
-static int FailAfterwards(pid_t child, struct user_regs_struct* now) {
-  int status;
-  ptrace(PTRACE_SYSCALL, child, 0, 0);
-  if (waitpid(child, &status, __WALL) < 0 || !WIFSTOPPED(status)) return 0;
-  ptrace(PTRACE_GETREGS, child, 0, now);
-  now->rax = (unsigned long)-value;
-  ptrace(PTRACE_SETREGS, child, 0, now);
-  return 1;
+// Lets the call happen with other arguments, and gives the caller its registers back, which it may go on using. `told`: what it is told instead.
+static void Happen(pid_t child, struct user_regs_struct* changed, const struct user_regs_struct* before, const long* told) {
+  struct user_regs_struct after;
+  int status, forward = 0;
+  ptrace(PTRACE_SETREGS, child, 0, changed);
+  do {
+    ptrace(PTRACE_SYSCALL, child, 0, forward);
+    if (waitpid(child, &status, __WALL) < 0 || !WIFSTOPPED(status)) return;
+    forward = WSTOPSIG(status);
+  } while (forward != (SIGTRAP | 0x80));
+  ptrace(PTRACE_GETREGS, child, 0, &after);
+  after.rdi = before->rdi;
+  after.rdx = before->rdx;
+  if (told != NULL) after.rax = (unsigned long)*told;
+  ptrace(PTRACE_SETREGS, child, 0, &after);
 }
 
 static void Act(pid_t child, pid_t process, const struct Call* call, struct user_regs_struct* now) {
+  const struct user_regs_struct before = *now;
   if (strcmp(action, "hold") == 0) {
     Hold();
   } else if (strcmp(action, "signal") == 0) {
     kill(process, (int)value);
   } else if (strcmp(action, "short") == 0) {
     now->rdx = now->rdx > 1 ? now->rdx / 2 : now->rdx;
-    ptrace(PTRACE_SETREGS, child, 0, now);
+    Happen(child, now, &before, NULL);
   } else if (strcmp(action, "error") == 0) {
-    if (call->number == SYS_close) {
-      FailAfterwards(child, now);
-      return;
-    }
-    if (call->number == SYS_brk) {
+    const long told = -value;
+    if (call->number == SYS_close) {  // a descriptor is closed whatever close() returns
+      Happen(child, now, &before, &told);
+    } else if (call->number == SYS_brk) {
       now->rdi = 0;  // asks where the end is, which is how it says no
+      Happen(child, now, &before, NULL);
     } else {
       now->orig_rax = (unsigned long)-1;
-      now->rax = (unsigned long)-value;
+      now->rax = (unsigned long)told;
+      ptrace(PTRACE_SETREGS, child, 0, now);
     }
-    ptrace(PTRACE_SETREGS, child, 0, now);
   }
 }
 
