@@ -113,9 +113,10 @@ StatusLook LookAt(const std::string& dir) {
   if (stores.size() > 1 || (stores.size() == 1 && stores.front() != dir)) return LookAtShards(stores);
   StatusLook look;
   store::ResultReader reader(dir);
+  const store::Transaction moment = reader.Moment();  // counts and intervals are of one
   look.name = reader.Layout().name;
   look.arms = reader.Status();
-  for (const metrics::ArmData& arm : report::LoadRun(dir).arms) {
+  for (const metrics::ArmData& arm : report::LoadRun(reader).arms) {
     for (store::ArmStatus& status : look.arms)
       if (status.stage == arm.stage && status.arm == arm.name)
         status.missing = arm.missing;  // none where a precision has been reached

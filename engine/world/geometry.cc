@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -44,12 +45,17 @@ struct SceneDeleter {
 };
 using ScenePtr = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneDeleter>;
 
+// No memory is nobody's mistake.
+void CheckEmbree(RTCError error, const std::string& where) {
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  ED3R_CHECK(error == RTC_ERROR_NONE, fmt::format("Embree error {}{}", static_cast<int>(error), where));
+}
+
 RTCDevice MakeDevice() {
   // One build thread: missions already use every core, and a build in tasks may order its tree differently.
   const std::string config = fmt::format("isa={},threads=1", RayInstructionSet());
   const RTCDevice device = rtcNewDevice(config.c_str());
-  ED3R_CHECK(device != nullptr,
-             fmt::format("Embree error {} for '{}'", static_cast<int>(rtcGetDeviceError(nullptr)), config));
+  if (device == nullptr) CheckEmbree(rtcGetDeviceError(nullptr), fmt::format(" for '{}'", config));
   return device;
 }
 
@@ -74,8 +80,7 @@ ScenePtr MakeScene(RTCDevice device, const TriangleMesh& mesh) {
   rtcAttachGeometry(scene.get(), geometry);
   rtcReleaseGeometry(geometry);
   rtcCommitScene(scene.get());
-  const RTCError error = rtcGetDeviceError(device);
-  ED3R_CHECK(error == RTC_ERROR_NONE, fmt::format("Embree error {}", static_cast<int>(error)));
+  CheckEmbree(rtcGetDeviceError(device), "");
   return scene;
 }
 

@@ -98,11 +98,6 @@ RunResults ResultsOf(store::ResultReader& reader, const std::vector<store::ArmSt
 
 }  // namespace
 
-RunResults LoadRun(const std::string& dir) {
-  store::ResultReader reader(dir);
-  return LoadRun(reader);
-}
-
 RunResults LoadRun(store::ResultReader& reader) {
   const store::Transaction moment = reader.Moment();
   return ResultsOf(reader, reader.Status(),

@@ -8,10 +8,9 @@
 
 namespace ed3r::report {
 
-// Every arm of the flying stages of the store in `dir`, in plan order, with its missions (without timesteps)
+// Every arm of the flying stages of the store, in plan order, with its missions (without timesteps)
 // and how many failed or are missing; training stages are left out. The run may still be going on: all is of one moment.
-// Throws UserError where there is no store or a damaged one.
-RunResults LoadRun(const std::string& dir);
+// Throws UserError where the store is damaged.
 RunResults LoadRun(store::ResultReader& reader);
 
 // The same with what made it and the digest of just these missions, for what is kept: everything is compared with its

@@ -86,6 +86,21 @@ TEST(RunTest, ThreadsShardsAndSimdLevelsDoNotShow) {
   EXPECT_NE(Fly("rbs.yaml", "--missions 30 --seed 1", scratch / "seed"), one);
 }
 
+TEST(RunTest, EveryCommandSaysHowMuchOfThePlanItHas) {
+  const ScratchFolder scratch;
+  const std::string whole = (scratch / "whole").string(), half = (scratch / "half").string(),
+                    merged = (scratch / "merged").string();
+  Fly("rbs.yaml", "--missions 4", whole);
+  Fly("rbs.yaml", "--missions 4 --shard 1/2", half);
+  const std::string part = " 2 of 4 planned missions\n";
+  EXPECT_EQ(Ed3r(fmt::format("merge {} {}", merged, half)).err,
+            fmt::format("note: {}: holds{}", merged, part));
+  EXPECT_EQ(Ed3r("export --csv " + merged).err, fmt::format("note: {}: the tables are of{}", merged, part));
+  EXPECT_EQ(Ed3r("digest " + merged).err, "note: this is the digest of" + part);
+  EXPECT_EQ(Ed3r(fmt::format("compare {} {}", whole, merged)).err,
+            fmt::format("note: {}: is compared by{}", merged, part));
+}
+
 TEST(RunTest, AKillLosesLittleAndTheSameCommandContinues) {
   const ScratchFolder scratch;
   const std::string whole = Fly("rbs.yaml", "--missions 250", scratch / "whole");

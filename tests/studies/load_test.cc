@@ -35,10 +35,15 @@ void WriteRun(const std::string& dir) {
   store->Commit();
 }
 
+report::RunResults LoadRunIn(const std::string& dir) {
+  store::ResultReader reader(dir);
+  return report::LoadRun(reader);
+}
+
 TEST(LoadRunTest, GivesFlyingArmsInPlanOrder) {
   const store::TempDir temp;
   WriteRun(temp / "run");
-  const report::RunResults run = report::LoadRun(temp / "run");
+  const report::RunResults run = LoadRunIn(temp / "run");
   EXPECT_EQ(run.name, "baselines");
   ASSERT_EQ(run.arms.size(), 3u);
   EXPECT_EQ(run.arms[0].stage, "warmup");
@@ -73,7 +78,7 @@ TEST(LoadRunTest, AGapOfARunWithAPrecisionIsMissing) {
       for (const int number : numbers) store->Put({0, 0, number}, Mission(number), 0.5);
       store->Commit();
     }
-    return report::LoadRun(temp / "run").arms[0].missing;
+    return LoadRunIn(temp / "run").arms[0].missing;
   };
   EXPECT_EQ(missing({0, 1, 2, 3}), 0);
   EXPECT_EQ(missing({0, 4}), 3);
@@ -118,7 +123,7 @@ TEST(LoadWholeTest, AllIsOfOneMoment) {
   writer.join();
   store::ResultReader reader(temp / "run");
   const report::WholeRun whole = report::LoadWhole(reader, "called");
-  const report::RunResults again = report::LoadRun(temp / "run");
+  const report::RunResults again = LoadRunIn(temp / "run");
   ASSERT_EQ(whole.results.arms[2].missions.size(), again.arms[2].missions.size());
   EXPECT_TRUE(whole.results.arms[2].missions[7].steps.empty());
 }
@@ -126,7 +131,7 @@ TEST(LoadWholeTest, AllIsOfOneMoment) {
 TEST(LoadRunTest, ReportOfAStoreIsTheReportOfItsMissions) {
   const store::TempDir temp;
   WriteRun(temp / "run");
-  const report::Report report = report::MakeReport(report::LoadRun(temp / "run"), {});
+  const report::Report report = report::MakeReport(LoadRunIn(temp / "run"), {});
   const metrics::ArmMetrics direct = metrics::ComputeMetrics(FiveMissions());
   for (const char* metric : {"total_energy_kj", "mscs_pct", "wer_pct", "or_pct", "lf_accuracy_pct"}) {
     EXPECT_EQ(report.arms[2][metric].value, direct[metric].value) << metric;
@@ -137,7 +142,7 @@ TEST(LoadRunTest, ReportOfAStoreIsTheReportOfItsMissions) {
 
 TEST(LoadRunTest, NoStoreIsAUserError) {
   const store::TempDir temp;
-  EXPECT_TRUE(store::Contains(store::UserErrorOf([&] { report::LoadRun(temp / "nowhere"); }), "nowhere"));
+  EXPECT_TRUE(store::Contains(store::UserErrorOf([&] { LoadRunIn(temp / "nowhere"); }), "nowhere"));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/app/commands.h"
+#include "engine/app/lacking.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/files/csv_table.h"
@@ -154,6 +155,7 @@ int Export(const Options& options) {
   FlushOutput();
   TellNotes(run.notes());
   if (!options.csv && !options.numpy) return kDone;
+  TellLacking(reader, options.dir + ": the tables are of");
   for (const std::string& note : exports::TimestepNotes(reader)) Tell("note: {}: {}", options.dir, note);
   return kDone;
 }

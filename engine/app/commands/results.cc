@@ -9,6 +9,7 @@
 #include "engine/app/commands.h"
 #include "engine/app/failure_text.h"
 #include "engine/app/kept_inputs.h"
+#include "engine/app/lacking.h"
 #include "engine/app/report_missions.h"
 #include "engine/app/stage_state.h"
 #include "engine/app/status_of_shards.h"
@@ -281,8 +282,7 @@ Command AddDigest(Program& program) {
             if (!reader.Tables().checked()) Tell("note: {}", store::kNothingToCompare);
             TellDamageOfInputs(reader, options->dir);
             TellNotes(run.notes());
-            if (missions < planned)
-              Tell("note: this is the digest of {} of {} planned missions", missions, planned);
+            TellLacking(reader, "this is the digest of");
             return kDone;
           }};
 }
@@ -306,6 +306,9 @@ Command AddMerge(Program& program) {
                 options->accept_mixed ? store::OtherCode::kAccept : store::OtherCode::kRefuse);
             fmt::print("{}: {} missions added, {} were there already, {} failed\n", options->out,
                        summary.added, summary.present, summary.failed);
+            FlushOutput();
+            store::ResultReader reader(options->out);
+            TellLacking(reader, options->out + ": holds");
             return kDone;
           }};
 }

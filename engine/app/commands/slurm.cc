@@ -117,6 +117,7 @@ void Write(const std::vector<schedule::BatchFile>& files, const fs::path& folder
         "write over it",
         path.string(), (folder / "submit.sh").string()));
   }
+  MakeFolder(folder);
   MakeFolder(folder / "logs");
   FileSet changed;  // a task that begins just now finds all the others
   for (const schedule::BatchFile& file : files)

@@ -37,6 +37,9 @@ void ForEachField(std::string_view message, const std::string& name,
     const std::uint64_t key = TakeVarint(message, name);
     ProtobufField field;
     field.number = static_cast<std::uint32_t>(std::min<std::uint64_t>(key >> 3, UINT32_MAX));
+    if (field.number == 0)
+      throw UserError(fmt::format(
+          "{}: is no ONNX model: a field of number 0, such as zeros make that a disk left", name));
     switch (key & 7) {
       case 0:
         field.value = TakeVarint(message, name);

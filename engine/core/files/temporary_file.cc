@@ -107,7 +107,8 @@ TemporaryFolder::TemporaryFolder(const fs::path& parent) {
     return ::mkdir(path_.c_str(), 0700) == 0 ? ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
   });
   if (descriptor_ < 0)
-    throw UserError(fmt::format("{}: cannot be made: {}", path_.string(), std::strerror(errno)));
+    throw std::system_error(errno, std::generic_category(),
+                            fmt::format("{}: cannot be made", path_.string()));
 }
 
 TemporaryFolder::~TemporaryFolder() {

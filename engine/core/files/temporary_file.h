@@ -25,7 +25,7 @@ int RemoveLeftovers(const std::filesystem::path& folder);
 // taken away.
 class TemporaryFolder {
  public:
-  // UserError where it cannot be made.
+  // std::system_error where it cannot be made: the system has failed, not the one who named the place.
   explicit TemporaryFolder(const std::filesystem::path& parent);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
