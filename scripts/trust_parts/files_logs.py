@@ -73,7 +73,11 @@ def plain_log(data, read, skip=False):
                 return f"a row is {row}"
             bad += 1
             continue
-        found.append([value * factor for value, (_, factor) in zip(values, columns)])
+        scaled = [value * factor for value, (_, factor) in zip(values, columns)]
+        if skip and (not 0 < scaled[1] <= 1000 or scaled[2] < 0 or scaled[3] < 0):
+            bad += 1
+            continue
+        found.append(scaled)
     if bad > 0.1 * len(rows):
         return "more than a tenth of its rows are bad"
     if any(volt <= 0 or volt > 1000 or amp < 0 or speed < 0 for _, volt, amp, speed, *_ in found):
@@ -259,8 +263,8 @@ def few_unlike(found, wanted, touched):
     by_time = {round(row["time_s"], 1): row for row in wanted}
     foreign = [row for row in found if round(row["time_s"], 1) not in by_time or unlike_rows([row], [by_time[round(row["time_s"], 1)]])]
     missing = len(wanted) - len(found)
-    if touched >= len(wanted):  # cut: rows may be missing, and none may be another
-        touched = 0
+    if touched >= len(wanted):  # cut: rows may be missing; the last may lack its own position, and takes the one before
+        touched = 1
         missing = 0
     return f"{len(foreign)} rows are not of the log, {missing} are missing: {foreign[:2]} {key(found[0])}" if len(foreign) > touched or missing > touched else ""
 

@@ -207,6 +207,8 @@ def world(one):
     was, value = rng.choice([("cell_m: {}", "4"), ("hills_height_m: {}", "2"), ("hills_size_m: {}", "60"), ("at_m: [{}, 80], known", "120"), ("at_m: [30, {}]", "130"),
                              ("radius_m: {}", "8"), ("height_m: [20, {}]", "40"), ("size_m: [160, 160, {}]", "100"), ("at_m: [80, {}], known", "60")])
     done, text = ("otherwise", files_text.otherwise(rng, value)) if rng.random() < 0.3 else files_text.spoiled_number(random.Random(rng.random()), value)
+    if "[" in was and done == "a thousands comma":
+        done, text = "a thousands space", text.replace(",", " ")  # a list of one number more says what it says: a height
     if was.format(value) not in WORLD:
         raise RuntimeError(f"the world has no '{was}'")
     number = files_text.number(text.strip(" "))

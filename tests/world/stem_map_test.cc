@@ -93,6 +93,8 @@ TEST_F(StemMapTest, ComplaintsNameThePlaceInTheFileAsItIs) {
       "stems.csv:3:10: height_m: 'tall' is not allowed; allowed: 0.5 .. 130 m");
   EXPECT_EQ(Message("x_m y_m dbh_cm height_m crown_depth_m crown_radius_m\n3 7 20 15 8 2\n"),
             "stems.csv: its cells are apart by spaces; allowed: commas, semicolons or tabs");
+  EXPECT_EQ(Message("sep=;\n" + kHeader + "3,7,20,15,8,2\n"),
+            "stems.csv:1:5: sep=;: the names of the columns are parted by ','; correct this line");
   EXPECT_EQ(Message(std::string("\xFF\xFE\x78\x00", 4)), "stems.csv: UTF-16 text; save it as UTF-8");
   EXPECT_EQ(Message(std::string("PK\3\4\0\0", 6)),
             "stems.csv: is no text; allowed: a table with commas, semicolons or tabs");

@@ -79,11 +79,17 @@ DelimitedText ToDelimitedText(const std::string& path, std::string text) {
     throw UserError(fmt::format("{}: is no text; allowed: a table with commas, semicolons or tabs", path));
   if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
   const std::size_t first = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
-  if (std::string_view(text).substr(first).starts_with("sep="))
-    text[first] = '#';  // a line of spreadsheets alone
+  const std::string_view told = std::string_view(text).substr(first);
+  const char separator = told.starts_with("sep=") && told.size() > 4 ? told[4] : '\0';
+  if (told.starts_with("sep=")) text[first] = '#';  // a line of spreadsheets alone
   const Line header = FindHeader(text);
   const char delimiter =
       DelimiterOf(std::string_view(text).substr(header.begin, header.end - header.begin), path);
+  if (separator != '\0' && separator != delimiter)
+    throw UserError(
+        fmt::format("{}:1:5: sep={}: the names of the columns are parted by '{}'; correct this line", path,
+                    separator == '\t' ? "TAB" : std::string(1, separator),
+                    delimiter == '\t' ? "TAB" : std::string(1, delimiter)));
   CheckComments(path, text, header, delimiter);
   return {std::move(text), delimiter};
 }
