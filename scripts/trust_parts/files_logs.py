@@ -74,7 +74,7 @@ def plain_log(data, read, skip=False):
             bad += 1
             continue
         scaled = [value * factor for value, (_, factor) in zip(values, columns)]
-        if skip and (not 0 < scaled[1] <= 1000 or scaled[2] < 0 or scaled[3] < 0):
+        if skip and (not 0 < scaled[1] <= 1000 or scaled[2] < 0 or scaled[3] < 0 or scaled[5] <= -1000):
             bad += 1
             continue
         found.append(scaled)

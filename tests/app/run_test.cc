@@ -96,9 +96,23 @@ TEST(RunTest, EveryCommandSaysHowMuchOfThePlanItHas) {
   EXPECT_EQ(Ed3r(fmt::format("merge {} {}", merged, half)).err,
             fmt::format("note: {}: holds{}", merged, part));
   EXPECT_EQ(Ed3r("export --csv " + merged).err, fmt::format("note: {}: the tables are of{}", merged, part));
+  EXPECT_NE(Ed3r("report --no-figures --no-missions " + merged).err.find(": the report is of" + part),
+            std::string::npos);
   EXPECT_EQ(Ed3r("digest " + merged).err, "note: this is the digest of" + part);
   EXPECT_EQ(Ed3r(fmt::format("compare {} {}", whole, merged)).err,
             fmt::format("note: {}: is compared by{}", merged, part));
+}
+
+TEST(RunTest, VerifySaysThatShardsAreOfAnotherRun) {
+  const ScratchFolder scratch;
+  const auto shard = [&](int i) { return scratch / fmt::format("run/shards/online/{}", i); };
+  Fly("rbs.yaml", "--missions 4 --shard 1/2", shard(1));
+  Fly("rbs.yaml", "--missions 4 --shard 2/2 --seed 5", shard(2));
+  const CommandResult digest = Ed3r("digest " + (scratch / "run").string()),
+                      verify = Ed3r("verify " + (scratch / "run").string());
+  EXPECT_EQ(digest.status, 2);
+  EXPECT_EQ(verify.status, 1);
+  EXPECT_EQ(verify.out, digest.err);
 }
 
 TEST(RunTest, AKillLosesLittleAndTheSameCommandContinues) {

@@ -222,6 +222,8 @@ int MakeReportOf(const ReportOptions& options) {
   FlushOutput();
   TellNotes(run.notes());
   TellDamageOfInputs(reader, options.dir);
+  const report::Provenance& made_of = read.whole.provenance;
+  TellLacking(made_of.stored, made_of.planned, options.dir + ": the report is of");
   for (const std::string& note :
        {NamesOfSeveralStages(results), written.note, written.page_note, watched.note})
     if (!note.empty()) Tell("note: {}", note);

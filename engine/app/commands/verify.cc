@@ -59,6 +59,12 @@ Verification Verify(const std::string& dir) {
   Verification found;
   if (shards.empty() || store::HoldsResults(dir)) VerifyStore(dir, found);
   for (const std::string& shard : shards) VerifyStore(shard, found);
+  // Each may be whole, and of another run.
+  if (found.stores > 1 && found.damage.empty() && found.other.empty()) try {
+      const store::GatheredShards together(dir);
+    } catch (const UserError& error) {
+      found.other.emplace_back(error.what());
+    }
   for (const std::string& empty : store::EmptyShardDirs(dir))
     found.notes.push_back(fmt::format("{}: no results in it: {} is empty", empty, store::kResultsFile));
   return found;
