@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <opencv2/core.hpp>
 #include <system_error>
 
 #include "engine/app/commands.h"
@@ -106,6 +107,11 @@ int Main(int argc, char** argv) {
     return kFailedInside;
   } catch (const std::bad_alloc&) {
     Tell("ed3r: out of memory");
+    return kFailedInside;
+  } catch (const cv::Exception& error) {
+    Tell("{}", error.code == cv::Error::StsNoMem
+                   ? "ed3r: out of memory"
+                   : OneLine(fmt::format("ed3r: failed inside: {}", error.what())));
     return kFailedInside;
   } catch (const store::StoreError& error) {
     Tell("{}", OneLine(error.what()));

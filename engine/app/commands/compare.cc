@@ -202,6 +202,8 @@ int Compare(const Options& options) {
   fmt::print("{}", options.json ? JsonOf(study, departure_lines, other_contents).dump(2) + "\n" : text);
   FlushOutput();
   TellNotes(shard_notes);
+  if (const std::string& why = runs.front().scene.why_not; !why.empty())
+    Tell("note: {}: its world is not shown: {}", options.dirs.front(), why);
   return kDone;
 }
 

@@ -224,6 +224,8 @@ int MakeReportOf(const ReportOptions& options) {
   TellDamageOfInputs(reader, options.dir);
   const report::Provenance& made_of = read.whole.provenance;
   TellLacking(made_of.stored, made_of.planned, options.dir + ": the report is of");
+  if (const std::string& why = read.source.scene.why_not; !why.empty())
+    Tell("note: {}: its world is not shown: {}", options.dir, why);
   for (const std::string& note :
        {NamesOfSeveralStages(results), written.note, written.page_note, watched.note})
     if (!note.empty()) Tell("note: {}", note);

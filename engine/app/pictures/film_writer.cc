@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "engine/core/check.h"
 #include "engine/core/files/file.h"
@@ -94,9 +95,10 @@ void FilmWriter::Commit() {
   const int whole = codec_->Close();
   if (whole != frames_) {
     file_->CheckRoom(Called(path_));
-    throw std::runtime_error(fmt::format(
-        "{}: {} of {} frames arrived: FFmpeg could not write them (its threads: see ulimit -u; memory)",
-        Called(path_), whole, frames_));
+    throw std::system_error(EAGAIN, std::generic_category(),
+                            fmt::format("{}: {} of {} frames arrived, FFmpeg could not write the others (its "
+                                        "threads: see ulimit -u; memory)",
+                                        Called(path_), whole, frames_));
   }
   if (rename(file_->path.c_str(), path_.c_str()) != 0) FailToWrite(Called(path_), errno);
   file_.reset();

@@ -20,6 +20,7 @@ class FloatNetwork final : public Network {
         pixel_offset_(model.pixel_offset),
         pixel_scale_(model.pixel_scale),
         stream_(PinnedEngine()) {
+    CheckRoomForCode();
     const OneThread one_thread;
     const std::vector<LayerShape> shapes = Layers(model.topology);
     const LayerShape& first = shapes.front();

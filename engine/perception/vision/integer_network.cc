@@ -27,6 +27,7 @@ struct IntegerLayer {
 class IntegerNetwork final : public Network {
  public:
   IntegerNetwork(const DetectorModel& model, int batch) : batch_(batch), stream_(PinnedEngine()) {
+    CheckRoomForCode();
     const OneThread one_thread;
     const std::vector<LayerShape> shapes = Layers(model.topology);
     ED3R_CHECK(model.quantization.size() == shapes.size(), "a model without quantisation scales");

@@ -1,8 +1,11 @@
 #include "engine/perception/vision/onednn.h"
 
 #include <omp.h>
+#include <sys/mman.h>
 
+#include <cerrno>
 #include <cstring>
+#include <new>
 
 #include "engine/core/check.h"
 
@@ -18,6 +21,17 @@ const dnnl::engine& PinnedEngine() {
     return dnnl::engine(dnnl::engine::kind::cpu, 0);
   }();
   return engine;
+}
+
+void CheckRoomForCode() {
+  constexpr std::size_t kBytes = 64 << 20;
+  void* const room = mmap(nullptr, kBytes, PROT_READ | PROT_WRITE | PROT_EXEC,
+                          MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED && (errno == EACCES || errno == EPERM))
+    throw UserError(
+        "this system forbids code that is made at run time, which the convolutional detectors need");
+  if (room == MAP_FAILED) throw std::bad_alloc();
+  munmap(room, kBytes);
 }
 
 OneThread::OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }

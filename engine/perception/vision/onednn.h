@@ -12,6 +12,10 @@ namespace ed3r::perception {
 // oneDNN was used before. Threads: any.
 const dnnl::engine& PinnedEngine();
 
+// Asks the system for the room that the code of a network needs: where oneDNN itself is refused it, it ends the process. Throws
+// std::bad_alloc, or UserError where the system forbids code that is made at run time.
+void CheckRoomForCode();
+
 // While it lives, oneDNN and OpenMP regions started by this thread run on this thread alone; other threads are not
 // touched. Needed while primitives are made, too: their blocking depends on the number of threads.
 class OneThread {
