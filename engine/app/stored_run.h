@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "engine/app/sweep_arguments.h"
 #include "engine/schedule/sweep_runner.h"
@@ -31,6 +32,8 @@ class StoredRun {
   mission::MissionTask Task(const sweep::RunId& id);
 
   store::ResultReader& Reader() { return reader_; }
+  // On shards that do not count.
+  const std::vector<std::string>& Notes() const { return gathered_.notes(); }
   const sweep::SweepPlan& Plan() const { return plan_; }
   const schedule::Inputs& SharedInputs() const { return inputs_; }
 

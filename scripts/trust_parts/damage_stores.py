@@ -162,7 +162,7 @@ def shards(trial):
     files = [f"run/{STORE}", *(f"run/{part}/{STORE}" for part in parts)]
     content = {file: (place_of(trial) / file).read_bytes() for file in files}
     template = keep(trial, "template")
-    substitutes = {file: [Substitute("the store of another seed", other_seed), Substitute("the whole run's store", (whole / STORE).read_bytes()),
+    substitutes = {file: [Substitute("the store of another seed", other_seed, alone=file == f"run/{STORE}"), Substitute("the whole run's store", (whole / STORE).read_bytes()),
                           *(Substitute(f"the same as {other}", content[other]) for other in files if other != file)] for file in files}
 
     def merge(place):

@@ -109,11 +109,9 @@ def changed_model(rng, model):
         return what, data + (data if what == "joined" else bytes(64)), "its bytes are more than one model"
     if what == "another kind":
         return what, rng.choice([b"", b"\x89HDF\r\n\x1a\n" + bytes(64), b"PK\3\4" + data, b"TFL3" + data, b"<html></html>"]), "it is no model"
-    weights = data.index(struct.pack("<f", model.weights[0][0]))
-    places = [i for i in range(len(data)) if not weights <= i < weights + 4 * len(model.weights) * len(model.weights[0])]
-    at = rng.choice(places)
-    if data[max(at - 12, 0):at + 12].find(struct.pack("<f", model.biases[0])) >= 0:
-        at = 1
+    numbers = [(data.index(packed), len(packed)) for values in ([value for row in model.weights for value in row], model.biases)
+               for packed in [struct.pack(f"<{len(values)}f", *values)]]
+    at = rng.choice([i for i in range(len(data)) if not any(begin <= i < begin + size for begin, size in numbers)])
     return f"{what}: byte {at}", data[:at] + bytes([data[at] ^ 1 << rng.randrange(8)]) + data[at + 1:], ""
 
 

@@ -11,6 +11,7 @@
 #include "engine/app/decision_text.h"
 #include "engine/app/execution_reason.h"
 #include "engine/app/stored_run.h"
+#include "engine/app/words.h"
 #include "engine/core/check.h"
 
 namespace ed3r::app {
@@ -132,6 +133,8 @@ int Explain(const Options& options) {
   const mission::MissionRecord& told = stored.keeps_timesteps ? stored.record : flown;
   const mission::TimestepRecord& step = told.steps[static_cast<std::size_t>(options.step - 1)];
   options.json ? PrintJson(task, probe, step) : PrintText(task, probe, step);
+  FlushOutput();
+  TellNotes(run.Notes());
   return kDone;
 }
 

@@ -179,6 +179,8 @@ int Replay(const Options& options) {
              flown.duration_s, flown.total_j / 1000.0,
              identical ? "identical to the stored record" : "DIFFERS from the stored record");
   fmt::print("{}: trace.csv, timesteps.csv, map.png{}\n", out.string(), viewer ? ", mission.html" : "");
+  FlushOutput();
+  TellNotes(run.Notes());
   return identical ? kDone : kFailedInside;
 }
 
