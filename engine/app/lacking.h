@@ -8,8 +8,7 @@
 
 namespace ed3r::app {
 
-// "note: BEFORE 24 of 60 planned missions" where some are not stored, else nothing.
-void TellLacking(std::int64_t missions, std::int64_t planned, const std::string& before);
-void TellLacking(store::ResultReader& reader, const std::string& before);
+// "note: BEFORE 24 of 60 planned missions" where that many of the run are fewer than planned, else nothing.
+void TellLacking(const store::ResultReader& reader, std::int64_t missions, const std::string& before);
 
 }  // namespace ed3r::app

@@ -17,6 +17,8 @@ void TimeSeries::Add(double time_s, double value) {
     back_s_ = times_s_.back() - time_s;
     back_from_s_ = times_s_.back();
   }
+  // What lies further back makes the log one that is refused, or the sample one of a state that is known already.
+  if (!times_s_.empty() && times_s_.back() - time_s > kMaxJoinS) return;
   const auto after = std::lower_bound(times_s_.begin(), times_s_.end(), time_s);
   if (after != times_s_.end() && *after == time_s) return;
   values_.insert(values_.begin() + (after - times_s_.begin()), value);

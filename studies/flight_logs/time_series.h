@@ -14,7 +14,7 @@ inline constexpr double kMaxJoinS = 1.0;
 
 class TimeSeries {
  public:
-  // A sample belongs where its stamp says, wherever it stands in the file; of two with one stamp the first counts.
+  // A sample belongs where its stamp says, by up to kMaxJoinS before the latest; of two with one stamp the first counts.
   void Add(double time_s, double value);
 
   // The farthest that a stamp lies before the latest one that stands ahead of it in the file, and that one; 0 where none does.

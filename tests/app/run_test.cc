@@ -113,6 +113,10 @@ TEST(RunTest, VerifySaysThatShardsAreOfAnotherRun) {
   EXPECT_EQ(digest.status, 2);
   EXPECT_EQ(verify.status, 1);
   EXPECT_EQ(verify.out, digest.err);
+  Fly("rbs.yaml", "--missions 4", scratch / "run");
+  const std::string complete = (scratch / "run").string();
+  EXPECT_EQ(Ed3r("verify " + complete).err, Ed3r("digest " + complete).err)
+      << "a note, as it is complete without";
 }
 
 TEST(RunTest, AKillLosesLittleAndTheSameCommandContinues) {

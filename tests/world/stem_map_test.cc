@@ -93,6 +93,7 @@ TEST_F(StemMapTest, ComplaintsNameThePlaceInTheFileAsItIs) {
       "stems.csv:3:10: height_m: 'tall' is not allowed; allowed: 0.5 .. 130 m");
   EXPECT_EQ(Message("x_m y_m dbh_cm height_m crown_depth_m crown_radius_m\n3 7 20 15 8 2\n"),
             "stems.csv: its cells are apart by spaces; allowed: commas, semicolons or tabs");
+  ExpectTrees("sep=\n" + kHeader + "3,7,20,15,8,2\n63,57,30,21.5,9,2.5\n");
   EXPECT_EQ(Message("sep=;\n" + kHeader + "3,7,20,15,8,2\n"),
             "stems.csv:1:5: sep=;: the names of the columns are parted by ','; correct this line");
   EXPECT_EQ(Message(std::string("\xFF\xFE\x78\x00", 4)), "stems.csv: UTF-16 text; save it as UTF-8");
@@ -182,14 +183,16 @@ TEST_F(StemMapTest, AColumnIsNotMappedAgainstTheUnitOfItsName) {
         name, header, unit,
         name.starts_with("dbh") ? "dbh_cm | dbh_mm | dbh_m | dbh_in" : "height_m | height_ft");
   };
-  for (const auto& [header, unit] : {std::pair("HT_FT", "ft"), std::pair("heightFeet", "ft"),
-                                     std::pair("Height (yd)", "yd"), std::pair("h [cm]", "cm")})
+  for (const auto& [header, unit] :
+       {std::pair("HT_FT", "ft"), std::pair("heightFeet", "ft"), std::pair("Height (yd)", "yd"),
+        std::pair("h [cm]", "cm"), std::pair("h_chains", "chains")})
     EXPECT_EQ(says("height_m", header), refused("height_m", header, unit));
   for (const auto& [header, unit] : {std::pair("DBH in", "in"), std::pair("d_mm", "mm")})
     EXPECT_EQ(says("dbh_cm", header), refused("dbh_cm", header, unit));
   for (const char* header : {"DBH", "DBH_1.3m", "DBH (cm) in 2020", "DBH at 1.3 m", "DBH_cm"})
     EXPECT_EQ(says("dbh_cm", header), "no error") << header;
-  for (const char* header : {"HT", "height in metres", "shift_top"})
+  for (const char* header :
+       {"HT", "height in metres", "shift_top", "Height in 2019", "Chain height", "H_Mile_Stand"})
     EXPECT_EQ(says("height_m", header), "no error") << header;
 }
 

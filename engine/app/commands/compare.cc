@@ -172,7 +172,7 @@ int Compare(const Options& options) {
     std::vector<figures::ArmPlan> plans = figures::ReadArmPlans(reader.StoredRecipe().plan_text);
     figures::FoundScene scene = runs.empty() ? report::SceneOf(reader, plans) : figures::FoundScene();
     seeds.insert(reader.Layout().seed);
-    TellLacking(reader, dir + ": is compared by");
+    TellLacking(reader, provenance.stored, dir + ": is compared by");
     const Fingerprints inputs = reader.StoredRecipe().inputs;
     if (labels.size() == 1) first_inputs = inputs;
     for (std::string& line : OtherContents(first_inputs, labels.front(), inputs, label))

@@ -155,7 +155,7 @@ int Export(const Options& options) {
   FlushOutput();
   TellNotes(run.notes());
   if (!options.csv && !options.numpy) return kDone;
-  TellLacking(reader, options.dir + ": the tables are of");
+  TellLacking(reader, tables.front().rows, options.dir + ": the tables are of");
   for (const std::string& note : exports::TimestepNotes(reader)) Tell("note: {}: {}", options.dir, note);
   return kDone;
 }

@@ -222,8 +222,7 @@ int MakeReportOf(const ReportOptions& options) {
   FlushOutput();
   TellNotes(run.notes());
   TellDamageOfInputs(reader, options.dir);
-  const report::Provenance& made_of = read.whole.provenance;
-  TellLacking(made_of.stored, made_of.planned, options.dir + ": the report is of");
+  TellLacking(reader, read.whole.provenance.stored, options.dir + ": the report is of");
   if (const std::string& why = read.source.scene.why_not; !why.empty())
     Tell("note: {}: its world is not shown: {}", options.dir, why);
   for (const std::string& note :
@@ -274,6 +273,7 @@ Command AddDigest(Program& program) {
   return {parser, [options] {
             const store::GatheredShards run(options->dir);
             store::ResultReader reader(run.dir());
+            const store::Transaction moment = reader.Moment();
             const std::string digest = store::DigestOf(reader);
             const std::int64_t missions = reader.CountMissions(), planned = reader.Layout().Missions();
             if (options->json)
@@ -286,7 +286,7 @@ Command AddDigest(Program& program) {
             if (!reader.Tables().checked()) Tell("note: {}", store::kNothingToCompare);
             TellDamageOfInputs(reader, options->dir);
             TellNotes(run.notes());
-            TellLacking(reader, "this is the digest of");
+            TellLacking(reader, missions, "this is the digest of");
             return kDone;
           }};
 }
@@ -312,7 +312,7 @@ Command AddMerge(Program& program) {
                        summary.added, summary.present, summary.failed);
             FlushOutput();
             store::ResultReader reader(options->out);
-            TellLacking(reader, options->out + ": holds");
+            TellLacking(reader, reader.CountMissions(), options->out + ": holds");
             return kDone;
           }};
 }

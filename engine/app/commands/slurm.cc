@@ -16,6 +16,7 @@
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/files/file.h"
+#include "engine/core/files/remove_file.h"
 #include "engine/schedule/batch/owed.h"
 #include "engine/schedule/batch/shell.h"
 #include "engine/schedule/batch/slurm_limits.h"
@@ -30,6 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kMaxShards = 100'000;
+constexpr char kSubmit[] = "submit.sh";
 
 struct Options {
   SweepArguments sweep;
@@ -115,16 +117,20 @@ void Write(const std::vector<schedule::BatchFile>& files, const fs::path& folder
     throw UserError(fmt::format(
         "{}: differs from what these options give; submit it as it is with {}, or give --force to "
         "write over it",
-        path.string(), (folder / "submit.sh").string()));
+        path.string(), (folder / kSubmit).string()));
   }
   MakeFolder(folder);
   MakeFolder(folder / "logs");
-  FileSet changed;  // a task that begins just now finds all the others
-  for (const schedule::BatchFile& file : files)
-    if (const fs::path path = folder / file.name;
-        !fs::exists(path) || ReadFile(path.string()) != file.content)
-      changed.Add(path, file.content);
-  changed.Commit();
+  const auto is_there = [&](const schedule::BatchFile& file) {
+    const fs::path path = folder / file.name;
+    return fs::exists(path) && ReadFile(path.string()) == file.content;
+  };
+  if (std::all_of(files.begin(), files.end(), is_there)) return;
+  // A task that begins just now finds every script; what submits them is not there until all are of this call.
+  RemoveFile(folder / kSubmit);
+  for (const bool last : {false, true})
+    for (const schedule::BatchFile& file : files)
+      if ((file.name == kSubmit) == last && !is_there(file)) WriteFile(folder / file.name, file.content);
   for (const schedule::BatchFile& file : files)
     if (file.executable)
       fs::permissions(folder / file.name,
@@ -176,7 +182,7 @@ std::int64_t ShardsOfScripts(const fs::path& folder) {
 }
 
 int Submit(const fs::path& folder, const std::vector<std::string>& arguments) {
-  std::vector<std::string> command = {(folder / "submit.sh").string()};
+  std::vector<std::string> command = {(folder / kSubmit).string()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   std::vector<char*> words;
   words.reserve(command.size() + 1);
@@ -219,8 +225,7 @@ int TellMissing(const sweep::SweepPlan& plan, const Options& options, const fs::
   std::vector<std::string> arguments = {fmt::format("{}", owed.step)};
   for (const std::string& array : schedule::ArraysOf(owed.tasks, options.array_limit))
     arguments.push_back(array);
-  fmt::print("\n{} {}\n", schedule::ShellWord((folder / "submit.sh").string()),
-             schedule::ShellWords(arguments));
+  fmt::print("\n{} {}\n", schedule::ShellWord((folder / kSubmit).string()), schedule::ShellWords(arguments));
   return options.submit ? Submit(folder, arguments) : kDone;
 }
 
@@ -247,7 +252,7 @@ int Run(const Options& options) {
         "note: without --time, or a line for it in the scripts, no task is told before the site's limit "
         "ends it and all that was to follow\n");
   if (options.submit) return Submit(folder, {});
-  fmt::print("submit them with {}\n", schedule::ShellWord((folder / "submit.sh").string()));
+  fmt::print("submit them with {}\n", schedule::ShellWord((folder / kSubmit).string()));
   return kDone;
 }
 

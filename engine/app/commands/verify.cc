@@ -13,6 +13,7 @@
 #include "engine/store/difference.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
+#include "engine/store/shards/common_run.h"
 #include "engine/store/shards/gathered_shards.h"
 #include "engine/store/shards/shards.h"
 
@@ -61,7 +62,9 @@ Verification Verify(const std::string& dir) {
   for (const std::string& shard : shards) VerifyStore(shard, found);
   // Each may be whole, and of another run.
   if (found.stores > 1 && found.damage.empty() && found.other.empty()) try {
-      const store::GatheredShards together(dir);
+      const store::AddingStores together = store::StoresThatAdd(dir);
+      const store::CommonRun run(together.dirs, store::OtherCode::kRefuse);
+      found.notes.insert(found.notes.end(), together.notes.begin(), together.notes.end());
     } catch (const UserError& error) {
       found.other.emplace_back(error.what());
     }

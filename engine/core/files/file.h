@@ -51,7 +51,7 @@ class AtomicFile {
 };
 
 // Files that belong together: whoever looks finds all that were there before, or all new ones, or that some are missing, but
-// never files of two sets, also after a crash. Unless committed, nothing is changed.
+// never files of two sets, also after a crash. Unless committed, nothing is changed; a Commit() that fails may leave some missing.
 class FileSet {
  public:
   // Lives as long as the set, which commits it.

@@ -71,7 +71,9 @@ int MakeLocked(const fs::path& folder, std::string_view end, fs::path& made,
       RemoveOnSignal(made);
       return file;
     }
-    ::close(file);  // taken for a leftover in between
+    std::error_code gone;
+    fs::remove(made, gone);  // taken for a leftover in between, by somebody who removes it as well
+    ::close(file);
   }
   errno = EEXIST;
   return -1;
@@ -104,7 +106,10 @@ int MakeTemporaryFile(const fs::path& folder, std::string_view end, fs::path& ma
 TemporaryFolder::TemporaryFolder(const fs::path& parent) {
   RemoveLeftovers(parent);
   descriptor_ = MakeLocked(parent, kTemporaryFolder, path_, [this] {
-    return ::mkdir(path_.c_str(), 0700) == 0 ? ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+    if (::mkdir(path_.c_str(), 0700) != 0) return -1;
+    const int folder = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder < 0 && errno == ENOENT) errno = EEXIST;  // taken for a leftover in between: another name
+    return folder;
   });
   if (descriptor_ < 0)
     throw std::system_error(errno, std::generic_category(),

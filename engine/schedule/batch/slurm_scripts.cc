@@ -141,7 +141,7 @@ std::string Directives(const std::string& sweep_name, const BatchStep& step, con
   if (step.expected_core_s > 0)
     text += fmt::format("# Expected: about {:.1f} minutes a task\n",
                         step.expected_core_s / 60 / static_cast<double>(step.tasks * cpus));
-  return text + "#SBATCH --requeue\nset -uo pipefail\n. ./common.sh\n\n";
+  return text + "#SBATCH --requeue\nset -uo pipefail\n. ./common.sh || exit 2\n\n";
 }
 
 std::string MergeCommands(const BatchStep& step, int number) {

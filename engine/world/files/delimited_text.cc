@@ -80,7 +80,8 @@ DelimitedText ToDelimitedText(const std::string& path, std::string text) {
   if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
   const std::size_t first = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   const std::string_view told = std::string_view(text).substr(first);
-  const char separator = told.starts_with("sep=") && told.size() > 4 ? told[4] : '\0';
+  const char separator =
+      told.starts_with("sep=") && told.size() > 4 && told[4] != '\n' && told[4] != '\r' ? told[4] : '\0';
   if (told.starts_with("sep=")) text[first] = '#';  // a line of spreadsheets alone
   const Line header = FindHeader(text);
   const char delimiter =

@@ -59,10 +59,10 @@ constexpr std::array<Synonym, 33> kSynonyms = {{{"metre", "m"},
                                                 {"kilometre", "km"},
                                                 {"kilometer", "km"}}};
 
-// What lengths are measured in besides, by words that mean little else; "in" does where it ends a name.
-constexpr std::array<std::string_view, 16> kOthers = {
-    "yd",      "yds",   "yard",   "yards",    "inch",     "inches", "fathom", "fathoms",
-    "furlong", "chain", "chains", "furlongs", "nautical", "nmi",    "mile",   "miles"};
+// What lengths are measured in besides, by words that mean little else, and by words that do so where they end a name.
+constexpr std::array<std::string_view, 6> kOthers = {"yd", "yds", "yard", "yards", "inch", "inches"};
+constexpr std::array<std::string_view, 11> kOthersAtTheEnd = {
+    "in", "fathom", "fathoms", "furlong", "furlongs", "chain", "chains", "nautical", "nmi", "mile", "miles"};
 
 bool IsLetter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool IsCapital(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
@@ -81,8 +81,10 @@ std::string UnitOfWord(const std::string& word, bool ends_the_name) {
   const bool plural = word.ends_with("metres") || word.ends_with("meters");
   const std::string_view single = std::string_view(word).substr(0, word.size() - (plural ? 1 : 0));
   if (const std::optional<LengthUnit> unit = FindLengthUnit(single)) return std::string(unit->name);
-  const bool other = std::find(kOthers.begin(), kOthers.end(), word) != kOthers.end();
-  return other || (word == "in" && ends_the_name) ? word : "";
+  const auto is_of = [&](const auto& words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  return is_of(kOthers) || (ends_the_name && is_of(kOthersAtTheEnd)) ? word : "";
 }
 
 // "U.S._Survey-Foot " -> "us survey foot"
@@ -127,8 +129,8 @@ std::vector<std::string> LengthUnitsIn(std::string_view text) {
       while (end < text.size() && IsLetter(text[end]) &&
              !(capitals_begin && IsCapital(text[end]) && IsSmall(text[end - 1])))
         ++end;
-      const bool last =
-          begin > 0 && std::none_of(text.begin() + static_cast<std::ptrdiff_t>(end), text.end(), IsLetter);
+      const bool last = begin > 0 && std::none_of(text.begin() + static_cast<std::ptrdiff_t>(end), text.end(),
+                                                  [](unsigned char c) { return std::isalnum(c) != 0; });
       const std::string unit =
           IsMeasure(text.substr(0, begin)) ? "" : UnitOfWord(Plain(text.substr(begin, end - begin)), last);
       if (!unit.empty()) units.push_back(unit);

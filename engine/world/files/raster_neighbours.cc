@@ -73,7 +73,7 @@ bool IsNameSign(char c) {
 
 // What stands in the elements and keys of XML, JSON and WKT that are called so.
 std::vector<std::string> TextsCalledUnit(const std::string& text) {
-  constexpr std::size_t kLongest = 60, kLongestSystem = 400;
+  constexpr std::size_t kLongest = 60, kLongestTag = 2000, kLongestSystem = 400;
   const std::string lower = LowerCase(text);
   const auto in_vertical_system = [&](std::size_t at) {  // others tell the unit of lengths
     const std::size_t before = std::min(at, kLongestSystem);
@@ -88,7 +88,7 @@ std::vector<std::string> TextsCalledUnit(const std::string& text) {
         !IsCalledUnit(std::string_view(lower).substr(begin, end - begin)))
       continue;
     std::size_t value = std::string::npos;
-    if (lower[begin - 1] == '<') value = lower.find('>', end);
+    if (lower[begin - 1] == '<') value = std::string_view(lower).substr(0, end + kLongestTag).find('>', end);
     if (lower[begin - 1] == '"' && lower[end] == '"') value = lower.find_first_not_of(" \t\r\n:[", end + 1);
     if (lower[end] == '[' && in_vertical_system(at)) value = end;
     if (value == std::string::npos) continue;

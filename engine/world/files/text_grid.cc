@@ -73,6 +73,10 @@ class TextGrid {
     if (!value) return fmt::format("'{}' is no number", word);
     const bool height = after_name_.empty();
     in_line_ += height;
+    constexpr double kFarthest = 1e9;  // of any coordinate system's metres, feet or degrees
+    if (after_name_.starts_with("xll") || after_name_.starts_with("yll"))
+      if (!(std::abs(*value) <= kFarthest))
+        return fmt::format("{} is '{}'; allowed: {} .. {}", after_name_, word, -kFarthest, kFarthest);
     const bool counts = (after_name_ == "ncols" && *value != static_cast<double>(columns_)) ||
                         (after_name_ == "nrows" && *value != static_cast<double>(rows_));
     if (counts) return fmt::format("{} is '{}'; allowed: a whole number of 32 bits", after_name_, word);
