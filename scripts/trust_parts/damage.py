@@ -10,13 +10,14 @@ bring a run back to the digest of the undisturbed one, or refuse. A refused comm
 import contextlib
 import json
 import math
+import pathlib
 import random
 import re
 import shutil
 import sqlite3
 import time
 
-from . import damage_files, damage_kinds, damage_stores
+from . import damage_files, damage_kinds, damage_stores, program
 from .damage_scene import aside_of, lay, look_at, place_of, put, same, told_of_substitute, told_of_whole, tree, written_aside
 
 # A word that says what is lacking. Rows are looked at as well: see only_lacks.
@@ -95,8 +96,9 @@ def altered(before, after):
 def one(trial, scene, large, keep=None):
     """One damage, seen by some of the scene's commands, drawn, and by one that goes on. What a fault was seen in is kept."""
     damage, faults = Damage(trial, scene), len(trial.faults)
-    trial.count(f"in {scene.name}")
     looks = trial.random.sample(scene.looks, min(len(scene.looks), 4 if large else 2))
+    if looks or scene.ends:
+        trial.count(f"in {scene.name}")
     refused = [look.name for look in looks if judge_look(trial, damage, look)]
     if refusers := set(refused) & {"digest", "report", "export"}:
         said = trial.ed3r("verify", damage.lay(trial) / scene.store)
@@ -114,7 +116,7 @@ def ended_well(trial, where, said, seconds, left):
         why = f"no word for a user: {said}"
     if not why and seconds > SILENCE_S:
         why = f"it took {seconds:.0f} s"
-    if not why and (temporary := [name for name in left if re.search(r"\.ed3r-.*\.tmp$", name)]):
+    if not why and (temporary := [name for name in left if any(program.STRAY.fullmatch(part) for part in pathlib.PurePath(name).parts)]):
         why = f"left behind: {temporary}"
     return trial.expect(not why, where, why)
 
@@ -139,21 +141,28 @@ def judge_look(trial, damage, look):
     place = damage.lay(trial)
     before, started = damage.untouched(place), time.monotonic()
     said, told = look_at(trial, look, place, damage.scene.environment)
-    trial.count("looks")
-    after = damage.untouched(place)
+    after = damage.untouched(place) | dict.fromkeys(program.strays(place))
     if not ended_well(trial, where, said, time.monotonic() - started, after):
         return True
     trial.expect(not altered(before, after), where, f"altered: {altered(before, after)[:4]}")
+    if said.status == whole_said.status != 0 and same(told, whole):
+        trial.count("refused as the undamaged is")  # nothing was compared
+        return False
+    trial.count("looks")
     if said.status == whole_said.status and same(told, whole):
         trial.count("told the same")
         return False
     if said.status != 0:
         trial.count("refused")
+        trial.expect(not says_the_same(damage), where, f"refused, though it says the same: {said}")
         half = [name for name, sha in written_aside(trial).items() if name not in look.untold and whole.get(name) != sha]
         trial.expect(not half or look.follow, where, f"{said}; but wrote {half[:4]}")
         return True
     if of_other is not None and same(told, of_other):
         trial.count("told what the other file says")
+        return False
+    if damage.scene.may_lack and damage_stores.exported(trial, damage.lay(trial) / damage.scene.store) == damage.scene.rows:
+        trial.count("told all rows of the undisturbed run")  # a journal that would have taken back the last ones is not heeded
         return False
     if damage.scene.may_lack and only_lacks(trial, damage, look, said):
         silent = not look.counts and not look.shows and not says_what_lacks(said, whole_said)
@@ -163,6 +172,11 @@ def judge_look(trial, damage, look):
         return False
     trial.fault(where, f"exit 0, and something else is told: {changes(told, whole)[:4]}, {difference(told, whole)}; {(said.err or said.out).strip()[:200]}")
     return False
+
+
+def says_the_same(damage):
+    """Whether it is a text that people edit, with other line ends or a mark: such are read (results/trust.md)."""
+    return damage.kind in damage_kinds.OF_TEXT and damage.name.endswith(".yaml")
 
 
 def difference(told, whole):
@@ -192,12 +206,13 @@ def judge_end(trial, damage, end):
     where = f"{damage}: ed3r {words(end.arguments(place))}"
     before, started = damage.untouched(place), time.monotonic()
     said = trial.ed3r(*end.arguments(place), env=damage.scene.environment)
-    trial.count("commands that go on")
-    after = damage.untouched(place)
+    after = damage.untouched(place) | dict.fromkeys(program.strays(place))
     if not ended_well(trial, where, said, time.monotonic() - started, after):
         return
+    trial.count("commands that go on")
     if said.status != 0:
         trial.count("refused to go on")
+        trial.expect(not says_the_same(damage), where, f"refused, though it says the same: {said}")
         trial.expect(not altered(before, after), where, f"{said}; but altered: {altered(before, after)[:4]}")
         return
     found = end.result(trial, place)
@@ -205,5 +220,7 @@ def judge_end(trial, damage, end):
         rows = damage_stores.exported(trial, place / damage.scene.store)
         if rows is not None and rows < damage.scene.rows:
             return trial.count("went on with what there is")
-    trial.expect(found == end.expected or damage.kind in end.heeds, where,
+    if found != end.expected and damage.kind in end.heeds:
+        return trial.count("edits that were heeded")  # nothing was compared
+    trial.expect(found == end.expected, where,
                  f"exit 0 with another result: {str(found)[:100]}; {(said.out + said.err).strip()[:200]}")

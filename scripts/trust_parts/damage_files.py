@@ -22,7 +22,7 @@ set: {strategy: ed3r, mission.world: world.yaml, robot.battery_mah: 300, network
 """
 PIXELS_SWEEP = """name: pixels
 seed: 4
-missions: 60
+missions: 90
 set: {strategy: rbs, mission.world: world.yaml, robot.battery_mah: 300, perception.tier: pixels}
 """
 

@@ -50,6 +50,7 @@ class Scene:
     store: str = ""  # the run directory in it
     runs: tuple = ()  # all run directories, with a slash
     rows: frozenset = frozenset()  # all exported rows of the undisturbed run
+    early: bool = False  # of a run that was killed early much is refused, undamaged, too
     may_lack: bool = False  # missions may be gone without damage to those that stay
     environment: dict = dataclasses.field(default_factory=dict)
     baseline: dict = dataclasses.field(default_factory=dict)
@@ -110,9 +111,13 @@ def put(place, name, content):
 
 
 def told_of_whole(trial, scene, look):
-    """(Said, what is told) of the undamaged scene, asked for once."""
+    """(Said, what is told) of the undamaged scene, asked for once. Only what was killed early may be refused undamaged."""
     if look.name not in scene.baseline:
-        scene.baseline[look.name] = stable(trial, scene, look, lambda: lay(trial, scene.template))
+        said, told = scene.baseline[look.name] = stable(trial, scene, look, lambda: lay(trial, scene.template))
+        if said.status != 0 and not scene.early:
+            trial.fault(f"{scene.name}: {look.name}", f"refused undamaged: {said}")
+        if said.status == 0 and not any(told.values()):
+            trial.fault(f"{scene.name}: {look.name}", "nothing that it tells is the same twice: nothing can be compared")
     return scene.baseline[look.name]
 
 
@@ -123,7 +128,7 @@ def told_of_substitute(trial, scene, look, name, other):
 
 
 def stable(trial, scene, look, make):
-    """What is told twice of two copies of the same. A refusal is kept, too: of a run that was killed early, much is refused."""
+    """What is told twice of two copies of the same. A refusal is kept, too: see `told_of_whole`; of another run's file much is refused."""
     said, told = look_at(trial, look, make(), scene.environment)
     again, told_again = look_at(trial, look, make(), scene.environment)
     if said.fault() or again.status != said.status:

@@ -111,7 +111,7 @@ def killed(trial, name, journal, environment):
     missing_here = {file: [Substitute(f"{file} of an earlier moment", backup[file])] for file in files if backup.get(file)}
     missing_here.setdefault(f"run/{STORE}", []).append(Substitute("the finished store of another seed", other_seed, alone=True))
     return Scene(name, template, files, looks_at_a_run("run", whole, ("index.html", "manifest.json")), goes_on(digest, missions=many), donor=other_seed, weight=4, store="run",
-                 runs=("run/",), rows=rows, may_lack=True, substitutes=missing_here, environment=environment)
+                 runs=("run/",), rows=rows, early=True, may_lack=True, substitutes=missing_here, environment=environment)
 
 
 def killed_at_two_moments(trial, extra, journal, environment):

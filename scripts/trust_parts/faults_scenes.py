@@ -9,10 +9,13 @@ import errno
 import hashlib
 import os
 import pathlib
+import re
 import shutil
 import signal
 import sqlite3
 import time
+
+from . import program
 
 FLAT = """name: flat
 seed: 9
@@ -23,8 +26,11 @@ sweep: {list: [{name: rbs, strategy: rbs}, {name: level, strategy: look-level}]}
 HERE = pathlib.Path(__file__).resolve().parent
 LEARN = ("tiny.yaml", "--cache", "cache", "--quiet")
 QUICK = ("--no-figures", "--no-missions")
-# Known to stay (results/trust.md): a killed report's pictures, a killed command's files in $TMPDIR.
-KNOWN_STRAYS = (".drawing-", "ed3r-files-")
+NOT_MET = "not met"  # tries whose moment the command did not come to: they are judged, and are none
+# What shows a run's world: the page, what its map is drawn from, the map, missions to be watched.
+WORLDS_FILES = re.compile(r"[^/]+/(index\.html|figures/(data\.json|map\.(svg|png))|missions/[^/]+\.html)")
+# What this part itself puts into a place's folder for temporary files.
+OURS_IN_TMP = ("calls", "calls.held", "half", "away", "page", "exported", "joined", "x")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -35,6 +41,7 @@ class Scene:
     needs: tuple                  # names in the template; "half>run" is the template's half under the name run
     together: str = ""            # a folder whose files are of one generation
     mark: str = ""                # ... unless this one of them is missing: then it is visibly incomplete
+    refuses: bool = False         # undisturbed, it ends with another status than 0
 
 
 def scenes():
@@ -67,13 +74,13 @@ def scenes():
         Scene("replay --video", ("replay", "run", "rbs/3", "--cache", "cache", "--video", "film.mp4", "--out", "flown"), one),
         Scene("explain", ("explain", "run", "ed3r-75/3", "--step", "1", "--cache", "cache"), one),
         Scene("digest", ("digest", "run"), ("run",)),
-        Scene("digest (damaged)", ("digest", "damaged"), ("damaged",)),
+        Scene("digest (damaged)", ("digest", "damaged"), ("damaged",), refuses=True),
         Scene("verify", ("verify", "run"), ("run",)),
-        Scene("verify (damaged)", ("verify", "damaged"), ("damaged",)),
+        Scene("verify (damaged)", ("verify", "damaged"), ("damaged",), refuses=True),
         Scene("status", ("status", "half", "--json"), ("half",)),
         Scene("status --html", ("status", "run", "--html", "status.html"), ("run",)),
         Scene("status --watch", ("status", "run", "--watch"), ("run",)),
-        Scene("diff", ("diff", "run", "half"), ("run", "half")),
+        Scene("diff", ("diff", "run", "half"), ("run", "half"), refuses=True),  # half has fewer missions
         Scene("slurm", ("slurm", "tiny.yaml", "--out", "cluster", "--cache", "cache", "--time", "01:00:00"), flown[:2], "cluster/slurm", "submit.sh"),
         Scene("slurm (over)", ("slurm", "tiny.yaml", "--out", "cluster", "--cache", "cache", "--time", "01:00:00", "--force"), (*flown[:2], "cluster"),
               "cluster/slurm", "submit.sh"),
@@ -122,7 +129,12 @@ def look(place):
 
 
 def is_stray(name):
-    return pathlib.Path(name).name.startswith(".") and not any(known in name for known in KNOWN_STRAYS)
+    return any(part.startswith(".") for part in pathlib.Path(name).parts)
+
+
+def left_in_tmp(place):
+    """What a command left in its $TMPDIR."""
+    return sorted(path.name for path in (place / "tmp").iterdir() if path.name not in OURS_IN_TMP)
 
 
 def lines_that_stay(first, second):
@@ -148,6 +160,13 @@ class Undisturbed:
         self.stay = {name: lines_that_stay(self.after[name], again[name]) for name in self.after if name not in self.files and name in again}
         self.out = lines_that_stay(self.said.out.encode(), other.out.encode()) or {}
         self.exact_out = self.said.out if self.said.out == other.out else None
+        written = [name for name in self.after if self.before.get(name) != self.after[name] and (name in self.files or self.stay.get(name))]
+        if not (written or self.out or self.exact_out or scene.refuses):
+            stage.trial.fault(scene.name, "nothing that it says or writes is the same twice: nothing can be compared")
+        if self.said.status != 0 and not scene.refuses:
+            stage.trial.fault(scene.name, f"the undisturbed command is refused: {self.said}")
+        for place in (first, second):
+            stage.trial.expect(not (left := left_in_tmp(place)), scene.name, f"the undisturbed command left in $TMPDIR: {left}")
         stage.trial.discard(first, second)
 
     def is_new(self, name, contents):
@@ -284,15 +303,18 @@ class Judge:
         fault = bad_end(said) or (f"exit 0 where {self.good.said.status} is right" if said.status == 0 else "")
         return self.expect(not fault, fault)
 
-    def judge(self, place, said, again=True):
+    def judge(self, place, said, tidy=True):
+        """`tidy`: what was done to it did not keep it from taking its temporary files away."""
         self.word(said)
-        now = look(place)
+        now, left = look(place), left_in_tmp(place)
+        if tidy and said.status is not None and said.status >= 0:
+            self.expect(not left, f"left in $TMPDIR: {left}")
         if said.status == 0 and self.good.said.status == 0:
             self.full(now, said)
         else:
             self.visible(now)
         self.kept(now)
-        if again and (now != self.good.before or said.status == 0) and now != self.good.after:
+        if left or (now != self.good.before or said.status == 0) and now != self.good.after:
             self.comes_back(place)
         self.trial.discard(place)
 
@@ -301,7 +323,8 @@ class Judge:
         self.expect(goes_on or self.good.said_the_same(said.out), f"exit 0 with other words: {said.out[:300]!r}")
         for name in self.good.after:
             # A cache that cannot be kept, and a world that cannot be laid out again, are told, and no result.
-            told = name.startswith(("cache/", "new-cache/")) and said.err.strip() or ": its world is not shown: " in said.err
+            told = (name.startswith(("cache/", "new-cache/")) and said.err.strip() or
+                    WORLDS_FILES.fullmatch(name) and ": its world is not shown: " in said.err)
             self.expect(told or name in now and self.good.is_new(name, now[name]),
                         f"exit 0, and {name} {self.how(now, name)}; said: {said.err.strip()[:200]}")
 
@@ -353,7 +376,7 @@ class Judge:
         if said.status == 0:
             self.where += ", then said again"
             self.full(now, said, again=True)
-        left = sorted(name for name in now if name not in self.good.after and not any(known in name for known in KNOWN_STRAYS))
+        left = sorted(name for name in now if name not in self.good.after) + program.strays(place) + left_in_tmp(place)
         self.expect(not left, f"left behind for ever: {left}")
         for store in (name for name in self.good.after if name.endswith(".sqlite") and self.good.before.get(name) != self.good.after[name]):
             verified = self.stage.say(place, ("verify", str(pathlib.Path(store).parent)))

@@ -10,7 +10,7 @@ import tempfile
 import time
 
 from . import program
-from .faults_scenes import KNOWN_STRAYS, LEARN, QUICK, Judge, bad_end, look
+from .faults_scenes import LEARN, NOT_MET, QUICK, Judge, bad_end, is_stray, look
 
 CLOCK = """
 #define _GNU_SOURCE
@@ -69,11 +69,11 @@ def limited(trial, tracer, scene):
     name = {resource.RLIMIT_FSIZE: "RLIMIT_FSIZE", resource.RLIMIT_NOFILE: "RLIMIT_NOFILE", resource.RLIMIT_AS: "RLIMIT_AS"}[kind]
     judge = Judge(tracer.stage, scene, f"{name} {value}")
     said = tracer.stage.say(place, scene.arguments, limits={kind: value})
-    trial.count("limits")
     if said.status == 127 or "while loading shared libraries" in said.err:
         trial.count("too little for the loader")
         return trial.discard(place)
-    return judge.judge(place, said)
+    trial.count("limits")
+    return judge.judge(place, said, tidy=False)
 
 
 def clocks(trial, tracer, scene):
@@ -96,8 +96,8 @@ def small_disk(trial, tracer, scene):
     script = (f"mount -t tmpfs -o size={used + room}k none {inside} && cp -a {place}/. {inside} && cd {inside} || exit 99; "
               f'export TMPDIR={inside}/tmp; "$@"; status=$?; cp -a {inside} {after}; exit $status')
     said = tracer.stage.say(place, scene.arguments, before=("unshare", "--mount", "sh", "-c", script, "sh"))
-    if said.status == 99:
-        trial.discard(place)
+    if said.status == 99 or not after.exists():
+        trial.discard(place, inside, after)
         return trial.count("disks that could not be mounted")
     trial.count("small disks")
     judge.where += f"a disk with {room} kB left"
@@ -142,6 +142,7 @@ class Held(Started):
         end = time.monotonic() + program.PATIENCE_S
         while not self.mark.exists() and self.process.poll() is None and time.monotonic() < end:
             time.sleep(0.002)
+        self.met = self.mark.exists()
 
     def let_go(self):
         self.mark.unlink(missing_ok=True)
@@ -172,7 +173,7 @@ def held(trial, tracer, _):
     if not two.ended(WAIT_S):
         trial.count("others that waited")
     one.let_go()
-    trial.count("held while another works")
+    trial.count("held while another works" if one.met else NOT_MET)
     judge_both(judge, place, one.said(), two.said(), other)
 
 
@@ -224,6 +225,10 @@ def replaced(trial, tracer, _):
     n = 1 + trial.random.randrange(sum(tracer.calls(scene).values()))
     shutil.copytree(tracer.stage.template / "half", place / "tmp" / "half")
     one = Held(tracer, place, scene, n)
+    if not one.met:
+        one.said()
+        trial.count(NOT_MET)
+        return trial.discard(place)
     how = trial.random.choice(("run", "store", "out away", "out a file") if scene.together else ("run", "store"))
     replace(place, scene, how)
     one.let_go()
@@ -236,11 +241,11 @@ def replaced(trial, tracer, _):
         there = [name for name in names if name in now]
         fits = any(all(one.good.is_new(name, now[name]) for name in there) and one.good.said_the_same(said.out) for one in (judge, other))
         trial.expect(fits and len(there) in (0, len(names)), where, f"exit 0 with neither's output; {there} are there; {said.out[:200]!r}")
-    trial.discard(place)
+    return trial.discard(place)
 
 
 def products(judge):
-    return [name for name in judge.good.after if judge.good.before.get(name) != judge.good.after[name] and not any(k in name for k in KNOWN_STRAYS)]
+    return [name for name in judge.good.after if judge.good.before.get(name) != judge.good.after[name] and not is_stray(name)]
 
 
 def replace(place, scene, how):

@@ -2,7 +2,7 @@
 
 Each try makes one small file with numbers of its own, changes it, reads the changed bytes by a plain reader of this part, and
 asks the program what it makes of them. A file that says the same otherwise, and one that says other sensible numbers, gives exactly
-these or is refused; where the plain reader finds nothing sensible it must be refused. A fault is another number, a refusal in more
+these or is refused (the same written otherwise only as files_refusals.py knows); where the plain reader finds nothing sensible it must be refused. A fault is another number, a refusal in more
 or less than one line or with another status than 2, a crash, a hang, more than 6 GB of addresses. The files of a fault are
 kept; a try depends on the seed, its kind and its number alone: --only KIND/NUMBER does it again.
 """
@@ -12,7 +12,7 @@ import resource
 import shutil
 import tempfile
 
-from . import files_frames, files_grids, files_logs, files_settings, files_stems
+from . import files_frames, files_grids, files_logs, files_refusals, files_settings, files_stems
 
 KINDS = {**files_grids.KINDS, **files_stems.KINDS, **files_logs.KINDS, **files_frames.KINDS, **files_settings.KINDS}
 ADDRESSES = 6 << 30  # the program maps 1 GB where it uses a tenth of that
@@ -28,6 +28,7 @@ class Try:
         self.folder = trial.fresh("file")
         self.folder.mkdir()
         self.failed, self.done, self.arguments = False, "", ()
+        self.otherwise = ()  # what was written otherwise, where nothing else happened to the file
 
     def write(self, name, content):
         path = self.folder / name
@@ -54,10 +55,9 @@ class Try:
         if said.fault():
             return self.fault(said.fault())
         if said.status != 0:
-            self.trial.count(f"{self.kind} refused")
             if said.status != 2:
-                self.fault(f"not refused as bad input: {said}")
-            return None
+                return self.fault(f"not refused as bad input: {said}")
+            return self.refused(said, wanted)
         if isinstance(wanted, str):
             return self.fault(f"taken, though {wanted}")
         try:
@@ -68,6 +68,15 @@ class Try:
             return self.fault(f"another number: {difference}")
         self.trial.count(f"{self.kind} read rightly")
         return None
+
+    def refused(self, said, wanted):
+        """Whether what says the same was refused for a known way of writing."""
+        if not self.otherwise or isinstance(wanted, str):
+            return self.trial.count(f"{self.kind} refused")
+        way = files_refusals.known(self.kind, said.err.strip())
+        if not way:
+            self.fault(f"refused, though it says the same ({', '.join(self.otherwise)}): {said}")
+        return self.trial.count(f"{self.kind} refused for {way or 'no known way of writing'}")
 
 
 def run(trial, large, options):

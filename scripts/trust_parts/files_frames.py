@@ -71,6 +71,13 @@ def detector():
     return Model([[weight] for weight in WEIGHTS], BIASES, [1, 3, HIGH, WIDE], True)
 
 
+def ways(model):
+    """What of a model is written otherwise than plainly."""
+    told = {"transposed": model.transposed, f"floats {model.floats}": model.floats != "raw", "reversed": model.reversed, f"alpha {model.alpha}": model.alpha != 1,
+            f"operators of version {model.opset}": model.opset != 11, "more": model.more}
+    return tuple(way for way, is_so in told.items() if is_so) or ("as it is",)
+
+
 def changed_model(rng, model):
     """(what, bytes, whether it still says something sensible); the model is changed as the bytes are."""
     if rng.random() < 0.35:
@@ -167,7 +174,7 @@ def table_scores(one):
 def recording(one):
     rng = one.random
     pixels, order, shape, kind, version = frames(rng), "False", (COUNT, HIGH, WIDE, 3), "|u1", 1
-    what = rng.choice(["fortran", "type", "shape", "exchanged", "text", "cut", "longer", "a byte", "version", "keys' order", "keys twice", "big length", "flat", "bits", "as it is"])
+    what = rng.choice(["fortran", "type", "shape", "letters", "text", "cut", "longer", "a byte", "version", "keys' order", "keys twice", "big length", "flat", "bits", "as it is"])
     if what == "fortran":
         order = "True"
     elif what == "type":
@@ -178,11 +185,14 @@ def recording(one):
     header = f"{{'descr': '{kind}', 'fortran_order': {order}, 'shape': {shape}, }}"
     if what == "keys' order":
         header = f"{{'shape': {shape}, 'fortran_order': {order}, 'descr': '{kind}'}}"
+    elif what == "letters":
+        header = rng.choice([header.replace("'", '"'), header.replace(" ", ""), header.replace(", ", " , ")])
     elif what == "text":
-        header = rng.choice([header.replace("'", '"'), header.replace(" ", ""), header.replace(", ", " , "), header[:-1], header.replace("}", "").replace("{", "")])
+        header = rng.choice([header[:-1], header.replace("}", "").replace("{", "")])
     elif what == "keys twice":
         header = header[:-1] + rng.choice([f"'shape': {(COUNT, WIDE, HIGH, 3)}", "'fortran_order': True", "'descr': '|i1'", "'descr': '<u2'"]) + "}"
     data = npy(header, pixels, rng.choice([2, 3]) if what == "version" else 1)
+    one.otherwise = (what,) if what in ("keys' order", "version", "as it is", "letters") else ()
     at = rng.randrange(1, len(data))
     if what == "cut":
         data = data[:at]
@@ -231,8 +241,7 @@ def labels(one):
     rng = one.random
     pixels = frames(rng)
     table = labels_table(rng)
-    change = files_text.write_otherwise if rng.random() < 0.25 else files_text.spoil
-    done, data = change(rng, table, range(2, 7))
+    done, data = files_text.change(one, table, range(2, 7))
     model = detector()
     said = frame_set(one, npy(f"{{'descr': '|u1', 'fortran_order': False, 'shape': {(COUNT, HIGH, WIDE, 3)}, }}", pixels), data, model)
     table = files_text.plain_table(data, ("\0",))
@@ -258,6 +267,7 @@ def own_detector(one):
     rng = one.random
     pixels, model = frames(rng), detector()
     done, data, why = changed_model(rng, model)
+    one.otherwise = ways(model) if done.startswith("written otherwise") else ()
     said = frame_set(one, npy(f"{{'descr': '|u1', 'fortran_order': False, 'shape': {(COUNT, HIGH, WIDE, 3)}, }}", pixels), labels_table(rng).text().encode(), model, data)
     size = HIGH * WIDE * 3
     one.judge(done, said, lambda: table_scores(one), why or [score(means_of(pixels[i * size:(i + 1) * size]), model) for i in range(COUNT)], unlike_scores)
@@ -301,6 +311,7 @@ def picture(one):
         data = data[:-12]
     elif what == "a part lost":
         data, why = data.replace(parts[-2], b""), "a part is lost"
+    one.otherwise = (what,) if what == "as it is" else ()
     one.write("picture.png", data)
     one.write("model.onnx", model.data())
     said = detected(one, "picture.png")
@@ -343,13 +354,13 @@ def policy(one):
     weights = [[rng.randint(-64, 64) / 1024 for _ in range(5)] for _ in range(8)]
     model = Model(weights, [3.0, -2.0, 0.5, 0.25, 0.125], [1, 8], False)
     done, data, why = changed_model(rng, model)
+    one.otherwise = ways(model) if done.startswith("written otherwise") else ()
     one.write("tiny_world.yaml", (program.SWEEP.parent / "tiny_world.yaml").read_bytes())
     one.write("sweep.yaml", "# Does it fly?\nname: own\nseed: 3\nmissions: 2\nset: {mission.world: tiny_world.yaml, robot.battery_mah: 100, strategy: ablation-2, networks.rc: rc.onnx}\n")
     one.write("rc.onnx", data)
     said = one.ed3r("run", "sweep.yaml", "--out", "run", "--cache", "cache", "--quiet")
     if said.status == 3 and len(said.err.strip().splitlines()) <= 1:
-        one.trial.count("policies whose missions failed")
-        return
+        return one.trial.count("policies whose missions failed: nothing was compared")
     wanted = why
     if said.status == 0 and not why:
         plain = Model(model.weights, model.biases, [1, 8], False)
@@ -358,7 +369,7 @@ def policy(one):
         wanted = [one.trial.digest(one.folder / "clean") if clean.status == 0 else str(clean)]
         one.write("rc.onnx", data)
     one.arguments = ("run", "sweep.yaml", "--out", "again")
-    one.judge(done, said, lambda: [one.trial.digest(one.folder / "run")], wanted or [""], lambda found, those: "" if found == those else f"digest {found}, of a clean file {those}")
+    return one.judge(done, said, lambda: [one.trial.digest(one.folder / "run")], wanted or [""], lambda found, those: "" if found == those else f"digest {found}, of a clean file {those}")
 
 
 KINDS = {"recording": recording, "labels": labels, "detector": own_detector, "picture": picture, "policy": policy}

@@ -67,6 +67,7 @@ def ascii_grid(one):
     rows = [[f"{height:.2f}" for height in row] for row in heights(rng)]
     change = text_otherwise if rng.random() < 0.3 else text_spoiled
     done, data = change(rng, header, rows)
+    one.otherwise = tuple(done.split(", ")) if change is text_otherwise else ()
     one.write("ground.asc", data)
     judge_ground(one, done, "ground.asc", plain_grid(data))
 
@@ -102,7 +103,7 @@ def text_otherwise(rng, header, rows):
     elif what == "a cell's sides":
         header = [pair for key, value in header for pair in ([("dx", value), ("dy", value)] if key == "cellsize" else [(key, value)])]
     elif what == "another corner":
-        header = [(key, "7" if "ll" in key else value) for key, value in header]
+        header = [(key, "7" if key.startswith(("xll", "yll")) else value) for key, value in header]
     return f"{what}, {end!r}, {space!r}", text_of(header, rows, end, space).encode()
 
 
@@ -268,6 +269,7 @@ def geotiff(one):
         tiff.nodata = rng.choice(["", "-9999", "nan", "-32768", " -9999 "])
         tiff.corner = (rng.choice([0.0, 481200.0]), rng.choice([88.0, 4903300.0]))
         done = f"written otherwise: { {key: value for key, value in vars(tiff).items() if key != 'rows'} }"
+        one.otherwise = ("a GeoTIFF of this kind",)
         one.write("ground.tif", tiff.data())
         return judge_ground(one, done, "ground.tif", (tiff.rows, CELL, CELL))
     done, data, wanted = tiff_spoiled(rng, tiff)

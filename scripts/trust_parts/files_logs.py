@@ -1,6 +1,7 @@
 """Flight logs: tables by a format file, AirData's, ArduPilot's and PX4's; the rows that `ed3r fit` writes are those of the log."""
 
 import csv
+import itertools
 import math
 import random
 import struct
@@ -11,6 +12,7 @@ FORMAT = """columns: {time_s: time_s, voltage_v: volt_v, current_a: amp_a, groun
 """
 AIRFRAME = ("robot.mass_kg=1.4", "robot.propellers=4", "robot.propeller_radius_m=0.12")
 HALF = {"time_s": 0.006, "airspeed_mps": 0.0055, "climb_mps": 0.0055, "power_w": 0.0055}  # of what rows.csv rounds to
+ENOUGH = 203  # rows before a cut, with which a log is read
 FEET, MILES = 0.3048, 0.44704
 
 
@@ -99,8 +101,7 @@ def own_table(one):
         missing = [name for name in meanings.values() if name not in header]
         return f"it has no column {missing[0]}" if missing else [(header.index(column), units.get(name, 1)) for name, column in meanings.items()]
 
-    change = files_text.write_otherwise if rng.random() < 0.25 else files_text.spoil
-    done, data = change(rng, table, range(6))
+    done, data = files_text.change(one, table, range(6))
     skip = rng.random() < 0.3
     one.write("log.csv", data)
     one.write("mine.yaml", format_text)
@@ -129,8 +130,7 @@ def airdata(one):
             found.append((those[0][0], sign * AIRDATA[those[0][1]]))
         return found
 
-    change = files_text.write_otherwise if rng.random() < 0.25 else files_text.spoil
-    done, data = change(rng, table, range(6))
+    done, data = files_text.change(one, table, range(6))
     one.write("log.csv", data)
     wanted = plain_log(data, read)
     said = fitted(one, "log.csv")
@@ -210,7 +210,8 @@ def raw(one, writer, name):
     at = rng.randrange(len(messages))
     what = rng.choice(["as it is", "a bit", "a bit", "a bit", "a bit of a format", "cut", "cut at a message", "a message lost", "a message twice", "messages exchanged", "joined", "NULs",
                        "a block of NULs", "a value"])
-    touched, data = 0, None
+    touched, data, begun = 0, None, 0
+    one.otherwise = (what,) if what == "as it is" else ()
     if what == "a message lost":
         what, touched = f"{what}: {messages.pop(at)[1]}", 1
     elif what == "a message twice":
@@ -239,11 +240,14 @@ def raw(one, writer, name):
     elif what == "cut":
         where = rng.randrange(len(data))
         what, data = f"cut at {where}", data[:where]
-        ends = {sum(len(message) for message, _ in messages[:i]) + len(log.head) for i in range(len(messages))}
+        ends = list(itertools.accumulate((len(message) for message, _ in messages), initial=len(log.head)))
+        begun = sum(is_.startswith("row ") for end, (_, is_) in zip(ends[1:], messages) if end <= where)
         wanted = "it is cut in a message" if where not in ends else wanted[:math.ceil(len(wanted) * where / len(data + b'1')) + 2]
         touched = len(rows)
     elif what == "cut at a message":
         data, touched = log.head + b"".join(message for message, _ in messages[:at]), len(rows)
+        begun = sum(is_.startswith("row ") for _, is_ in messages[:at])
+        one.otherwise = (what,) if begun > ENOUGH else ()
     elif what == "joined":
         data, wanted = data + data, "two logs are joined"
     elif what == "NULs":
@@ -252,7 +256,12 @@ def raw(one, writer, name):
         where = rng.randrange(len(data) - 512)
         what, data, wanted = f"{what} at {where}", data[:where] + bytes(512) + data[where + 512:], "512 bytes of it are lost"
     one.write(name, data)
-    one.judge(what, fitted(one, name), lambda: told(one), wanted, lambda found, those: few_unlike(found, those, touched))
+    one.judge(what, fitted(one, name), lambda: told(one), wanted, lambda found, those: too_few(found, begun) or few_unlike(found, those, touched))
+
+
+def too_few(found, begun):
+    """Rows that were written before a cut are read, but for those that lack what comes after them."""
+    return f"{len(found)} rows, {begun} were written before the cut" if len(found) < begun - 3 else ""
 
 
 def few_unlike(found, wanted, touched):

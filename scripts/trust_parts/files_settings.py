@@ -12,6 +12,8 @@ WORLD = (program.SWEEP.parent / "tiny_world.yaml").read_text(encoding="utf-8")
 HEAD = ["# Does it fly?", "name: settings", "seed: 3", "missions: 2"]
 KNOWN = set(OTHERS) | {f"robot.{key}" for key in ROBOT} | {f"energy.{key}" for key in ENERGY}
 
+SAME = ("otherwise", "lines exchanged", "a comment behind", "quotes", "a tab", "CR LF")  # accidents that keep what is said
+
 
 def plain_value(text):
     """A scalar of a line as YAML's plain reading has it: a number or None."""
@@ -49,8 +51,9 @@ def plain_lines(lines):
     return said
 
 
-def accident(rng, lines, whole):
+def accident(one, lines, whole):
     """(what, lines): something happens to lines of settings. `whole`: the last line is a mark that must stay."""
+    rng = one.random
     places = [i for i, line in enumerate(lines) if ": " in line and not line.startswith("#")]
     at = rng.choice(places)
     key, text = lines[at].split(": ", 1)
@@ -85,6 +88,7 @@ def accident(rng, lines, whole):
         lines[at] = {"a comment behind": f"{key}: {text}   # as measured", "quotes": f"{key}: '{text}'", "a tab": f"{key}:\t{text}", "CR LF": lines[at] + "\r",
                      "no blank behind the colon": f"{key}:{text}", "an equals sign": f"{key} = {text}", "a list": f"{key}: [{text}]", "a tag": f"{key}: !!float {text}",
                      "an anchor": f"{key}: &a {text}", "a comma at the end": f"{key}: {text},"}[what]
+    one.otherwise = (what,) if what in SAME else ()
     lost_mark = whole and lines[-1].rstrip("\r") != "# end of file"
     return f"{key.strip()}: {what}", lines, lost_mark
 
@@ -122,7 +126,7 @@ def sweep(one):
     rng = one.random
     lines = [*HEAD, "set:", "  strategy: random", "  mission.world: tiny_world.yaml", *(f"  {key}: {value}" for key, value in drawn(rng).items())]
     fixed = 7  # what follows is read by the plain reader; the head is given to it as it is
-    done, spoiled, _ = accident(rng, lines[fixed:], False)
+    done, spoiled, _ = accident(one, lines[fixed:], False)
     if done.endswith("joined") or rng.random() < 0.85:
         text = lines[:fixed] + spoiled
     else:
@@ -137,7 +141,7 @@ def base_file(one):
     lower, upper = drawn(rng), drawn(rng)
     below = ["set:", *(f"  {key}: {value}" for key, value in lower.items())]
     above = [f"  {key}: {float(value) * 1.125!r}" for key, value in upper.items()]
-    done, below, _ = accident(rng, below, False)
+    done, below, _ = accident(one, below, False)
     one.write("below.yaml", "\n".join(below) + "\n")
     said, out = flown(one, "sweep", "\n".join([*HEAD, "base: below.yaml", "set:", "  strategy: random", "  mission.world: tiny_world.yaml", *above]) + "\n")
     wanted = plain_lines(below)
@@ -150,7 +154,7 @@ def airframe(one):
     """A file as `ed3r fit` writes it, that ends with a mark."""
     rng = one.random
     lines = ["# The last line of this file is '# end of file'.", "robot:", *(f"  {key}: {value}" for key, value in ROBOT.items()), "energy:", *(f"  {key}: {value}" for key, value in ENERGY.items()), "# end of file"]
-    done, lines, lost = accident(rng, lines, True)
+    done, lines, lost = accident(one, lines, True)
     one.write("mine.yaml", "\n".join(lines) + "\n")
     said, out = flown(one, "sweep", "\n".join([*HEAD, "set:", "  strategy: random", "  mission.world: tiny_world.yaml", "  robot: mine.yaml"]) + "\n")
     judge_flight(one, done, said, out, "its mark is lost" if lost else plain_lines(lines))
@@ -161,6 +165,7 @@ def option(one):
     rng = one.random
     key, value = rng.choice(sorted(drawn(rng).items()))
     done, text = ("otherwise", files_text.otherwise(rng, value)) if rng.random() < 0.3 else files_text.spoiled_number(rng, value)
+    one.otherwise = (done,) if done == "otherwise" else ()
     text = text.replace("\0", "")
     one.write("tiny_world.yaml", WORLD)
     one.write("sweep.yaml", plain_sweep({}))
@@ -178,7 +183,7 @@ def log_format(one):
     table = files_text.Table(names.values(), [[f"{number / float(factor):.5f}" for number, factor in zip(row, factors.values())] for row in rows])
     one.write("log.csv", table.text())
     lines = [f"  {meaning}: {factor}" for meaning, factor in factors.items()]
-    done, lines, _ = accident(rng, lines, False)
+    done, lines, _ = accident(one, lines, False)
     one.write("mine.yaml", "\n".join(["columns:", *(f"  {meaning}: {name}" for meaning, name in names.items()), "units:", *lines]) + "\n")
     told = plain_factors(lines, factors)
     wanted = told
@@ -212,6 +217,7 @@ def world(one):
     if was.format(value) not in WORLD:
         raise RuntimeError(f"the world has no '{was}'")
     number = files_text.number(text.strip(" "))
+    one.otherwise = (done,) if done == "otherwise" else ()
     if any(sign in text for sign in ",[]{}#:") or text.startswith(("!", "&", "*", "'", '"', "%", "|", ">", "@")):
         number = None  # two values, or another kind of thing
     one.write("world.yaml", WORLD.replace(was.format(value), was.format(text)))

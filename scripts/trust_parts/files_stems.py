@@ -99,10 +99,7 @@ def world_of(one, file, world=WORLD):
 def stem_map(one):
     table = table_of(one.random, trees(one.random))
     numbers = list(range(1, len(table.header)))
-    if one.random.random() < 0.3:
-        done, data = files_text.write_otherwise(one.random, table, numbers)
-    else:
-        done, data = files_text.spoil(one.random, table, numbers)
+    done, data = files_text.change(one, table, numbers, 0.3)
     one.write("trees.csv", data)
     wanted = plain_stems(data)
     said = world_of(one, "trees.csv")

@@ -76,6 +76,15 @@ class Table:
         self.rows = [[row[i] for i in order] for row in self.rows]
 
 
+def change(one, table, numbers, share=0.25):
+    """Some are written otherwise, which is told to the try; to the others something happens: (what, bytes)."""
+    if one.random.random() >= share:
+        return spoil(one.random, table, numbers)
+    done, data = write_otherwise(one.random, table, numbers)
+    one.otherwise = tuple(done.split(" and "))
+    return done, data
+
+
 def write_otherwise(rng, table, numbers):
     """Changes that keep the meaning, some at once; `numbers`: indexes of columns of numbers."""
     done = []

@@ -7,6 +7,7 @@ same command does not bring to the same digest.
 import os
 import pathlib
 import random
+import re
 import resource
 import shutil
 import subprocess
@@ -14,7 +15,13 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 SWEEP = pathlib.Path(__file__).resolve().parent / "tiny.yaml"
+STRAY = re.compile(r"\.ed3r-.*\.(tmp|mp4|dir)")  # of temporary files, films and folders
 PATIENCE_S = 300  # of one command; the tiny sweep takes less than a second of processor time
+
+
+def strays(*places):
+    """Temporary files and folders below these places, by their paths."""
+    return sorted(str(path) for place in places if place.exists() for path in place.rglob(".ed3r-*") if STRAY.fullmatch(path.name))
 
 
 class Said:
@@ -46,9 +53,10 @@ class Trial:
     def __init__(self, name, binary, seed, keep=None):
         self.name, self.binary = name, str(binary)
         self.random = random.Random(f"{seed} {name}")
-        self.counts, self.faults = {}, []
+        self.counts, self.faults, self.skipped = {}, [], ""
         self._folder = tempfile.TemporaryDirectory(prefix=f"ed3r-trust-{name}-", dir=keep)
         self.folder = pathlib.Path(self._folder.name)
+        self._temporary = tempfile.mkdtemp(prefix=f"ed3r-trust-{name}-tmp-", dir=keep)  # beside the folder, which parts empty
         self._fresh = 0
 
     def count(self, what, by=1):
@@ -74,17 +82,25 @@ class Trial:
         return self.folder / f"{name}-{self._fresh}"
 
     def ed3r(self, *arguments, env=None, limits=None, cwd=None, before=()):
-        """Runs the program to its end. `limits`: {resource.RLIMIT_...: value}; `before`: a command that runs it."""
+        """Runs the program to its end. `limits`: {resource.RLIMIT_...: value}; `before`: a command that runs it.
+
+        It has a $TMPDIR of its own, in which nothing may stay unless it was killed, or limits kept it from tidying up."""
 
         def set_limits():
             for kind, value in (limits or {}).items():
                 resource.setrlimit(kind, (value, value))
 
+        temporary = pathlib.Path(tempfile.mkdtemp(prefix="tmp-", dir=self._temporary))
         try:
             done = subprocess.run([*before, self.binary, *map(str, arguments)], capture_output=True, timeout=PATIENCE_S, cwd=cwd,
-                                  env={**os.environ, **(env or {})}, preexec_fn=set_limits, check=False)
+                                  env={**os.environ, "TMPDIR": str(temporary), **(env or {})}, preexec_fn=set_limits, check=False)
+            left = sorted(path.name for path in temporary.iterdir())
         except subprocess.TimeoutExpired:
             return Said(None, "", "")
+        finally:
+            self.discard(temporary)
+        if left and done.returncode >= 0 and not limits:
+            self.fault(" ".join(map(str, arguments)), f"left in $TMPDIR: {left}")
         return Said(done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace"))
 
     def start(self, *arguments, env=None):
@@ -114,7 +130,7 @@ class Trial:
         said = self.fly(out, cache, sweep, extra)
         if not self.expect(said.status == 0, where, f"the same command does not continue: {said}"):
             return False
-        left = [str(path) for place in (out, cache) if place.exists() for path in place.rglob(".ed3r-*.tmp")]
+        left = strays(out, cache)
         return (self.expect(not left, where, f"left behind: {left}") and
                 self.expect((found := self.digest(out)) == digest, where, f"another digest: {found}"))
 
@@ -124,3 +140,4 @@ class Trial:
 
     def close(self):
         self._folder.cleanup()
+        self.discard(self._temporary)
