@@ -324,7 +324,8 @@ class Judge:
         for name in self.good.after:
             # A cache that cannot be kept, and a world that cannot be laid out again, are told, and no result.
             told = (name.startswith(("cache/", "new-cache/")) and said.err.strip() or
-                    WORLDS_FILES.fullmatch(name) and ": its world is not shown: " in said.err)
+                    WORLDS_FILES.fullmatch(name) and ": its world is not shown: " in said.err or
+                    name.endswith(".mp4") and name in now)  # of fewer threads its encoder makes other bytes
             self.expect(told or name in now and self.good.is_new(name, now[name]),
                         f"exit 0, and {name} {self.how(now, name)}; said: {said.err.strip()[:200]}")
 
@@ -360,7 +361,9 @@ class Judge:
                 self.expect(name in now or name not in self.good.after or name.startswith(self.scene.together + "/"), f"{name} is lost")
                 continue
             seen, new = now.get(name, {}), self.good.after.get(name, {})
-            lost = [key for key in old if old[key] == new.get(key) != seen.get(key)]
+            # A damaged mission goes whole before it is flown again.
+            again = {key[1:3] for key in old if old[key] != new.get(key)}
+            lost = [key for key in old if old[key] == new.get(key) != seen.get(key) and key[1:3] not in again]
             self.expect(not lost, f"{name}: {len(lost)} stored rows are lost or changed, such as {lost[:2]}: {self.how(now, name)}")
         for name, seen in now.items():
             if isinstance(seen, dict):

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <limits>
@@ -15,7 +16,7 @@ namespace ed3r::detection {
 namespace {
 
 constexpr std::uint64_t kMaxSidePx = 20000;
-constexpr std::string_view kShape = "'shape': (";
+constexpr std::string_view kShape = "'shape':(";
 
 // The four numbers after 'shape': in NPY's header, which is a Python dictionary; none for other than four.
 std::optional<std::array<std::uint64_t, 4>> ShapeOf(std::string_view header) {
@@ -32,6 +33,17 @@ std::optional<std::array<std::uint64_t, 4>> ShapeOf(std::string_view header) {
   }
   const bool ended = list.find_first_not_of(" ,") == std::string_view::npos;
   return ended ? std::optional(shape) : std::nullopt;
+}
+
+// As numpy writes it, without blanks but behind a digit: two numbers stay two.
+std::string Plain(std::string_view header) {
+  std::string plain;
+  for (const char c : header) {
+    const bool blank = std::isspace(static_cast<unsigned char>(c)) != 0;
+    if (!blank || (!plain.empty() && std::isdigit(static_cast<unsigned char>(plain.back())) != 0))
+      plain += blank ? ' ' : c == '"' ? '\'' : c;
+  }
+  return plain;
 }
 
 // Python takes the last of a key's values.
@@ -53,10 +65,11 @@ perception::FrameStack ParseNpy(std::string_view bytes, const std::string& name)
   const std::size_t length =
       static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
   const std::string_view header = bytes.substr(kStart, length);
-  const auto shape = ShapeOf(header);
-  if (!HasKeysOnce(header) || !shape || (*shape)[3] != 3 ||
-      header.find("'descr': '|u1'") == std::string_view::npos ||
-      header.find("'fortran_order': False") == std::string_view::npos)
+  const std::string plain = Plain(header);
+  const auto shape = ShapeOf(plain);
+  if (!HasKeysOnce(plain) || !shape || (*shape)[3] != 3 ||
+      plain.find("'descr':'|u1'") == std::string_view::npos ||
+      plain.find("'fortran_order':False") == std::string_view::npos)
     throw UserError(
         fmt::format("{}: a uint8 array of frames x height x width x 3 is wanted, not {}", name, header));
   const auto [frames, height, width, colours] = *shape;

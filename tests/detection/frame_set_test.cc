@@ -67,6 +67,8 @@ TEST_F(FrameSetTest, RefusesFilesThatDoNotFit) {
   ExpectRefusal("damaged");
   WriteNpy("(2, 2, 3)", 12);
   ExpectRefusal("frames x height x width x 3");
+  WriteNpy("(2, 2 3, 3, 3)", 36 * 3);
+  ExpectRefusal("frames x height x width x 3");
   WriteNpy("(2, 2, 3, 3)", 36, "<f4");
   ExpectRefusal("uint8");
   WriteNpy("(2, 2, 3, 3)", 36, "|u1', 'descr': '|i1");
@@ -75,6 +77,11 @@ TEST_F(FrameSetTest, RefusesFilesThatDoNotFit) {
   ExpectRefusal("2 rows for 3 frames");
   std::ofstream(folder_ / "frames.npy") << "nothing";
   ExpectRefusal("no NPY");
+}
+
+TEST_F(FrameSetTest, ReadsAHeaderThatIsWrittenOtherwise) {
+  WriteNpy("( 2,2 ,3, 3 )", 36);
+  EXPECT_EQ(ReadFrameSet(folder_).frames.width_px, 3);
 }
 
 TEST_F(FrameSetTest, RefusesFilesOfAnotherManifest) {

@@ -93,6 +93,7 @@ TEST_F(StemMapTest, ComplaintsNameThePlaceInTheFileAsItIs) {
       "stems.csv:3:10: height_m: 'tall' is not allowed; allowed: 0.5 .. 130 m");
   EXPECT_EQ(Message("x_m y_m dbh_cm height_m crown_depth_m crown_radius_m\n3 7 20 15 8 2\n"),
             "stems.csv: its cells are apart by spaces; allowed: commas, semicolons or tabs");
+  ExpectTrees(kHeader + "+3,7,20,15,8,2\n63,57,30,+21.5,9,2.5\n");
   ExpectTrees("sep=\n" + kHeader + "3,7,20,15,8,2\n63,57,30,21.5,9,2.5\n");
   EXPECT_EQ(Message("sep=;\n" + kHeader + "3,7,20,15,8,2\n"),
             "stems.csv:1:5: sep=;: the names of the columns are parted by ','; correct this line");

@@ -84,6 +84,7 @@ std::string NamesOf(StemQuantity quantity) {
 
 std::optional<double> ParsedNumber(std::string_view text) {
   double value = 0.0;
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
@@ -242,12 +243,11 @@ std::optional<double> StemTable::Number(std::size_t row, StemQuantity quantity, 
   }
   const double per_m = where.column->per_m;
   const double min = (where.column->base ? 0.0 : meaning.min_m) * per_m, max = max_m * per_m;
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value >= min) || !(value <= max))
+  const std::optional<double> value = ParsedNumber(text);
+  if (!value || !(*value >= min) || !(*value <= max))
     throw UserError(fmt::format("{}'{}' is not allowed; allowed: {:g} .. {:g} {}",
                                 table_.Where(row, where.index), text, min, max, where.column->unit));
-  return value / per_m;
+  return *value / per_m;
 }
 
 double StemTable::FirstNumber(const std::string& header) const {
