@@ -173,7 +173,7 @@ def table_scores(one):
 
 def recording(one):
     rng = one.random
-    pixels, order, shape, kind, version = frames(rng), "False", (COUNT, HIGH, WIDE, 3), "|u1", 1
+    pixels, order, shape, kind = frames(rng), "False", (COUNT, HIGH, WIDE, 3), "|u1"
     what = rng.choice(["fortran", "type", "shape", "letters", "text", "cut", "longer", "a byte", "version", "keys' order", "keys twice", "big length", "flat", "bits", "as it is"])
     if what == "fortran":
         order = "True"

@@ -152,7 +152,6 @@ def base_file(one):
 
 def airframe(one):
     """A file as `ed3r fit` writes it, that ends with a mark."""
-    rng = one.random
     lines = ["# The last line of this file is '# end of file'.", "robot:", *(f"  {key}: {value}" for key, value in ROBOT.items()), "energy:", *(f"  {key}: {value}" for key, value in ENERGY.items()), "# end of file"]
     done, lines, lost = accident(one, lines, True)
     one.write("mine.yaml", "\n".join(lines) + "\n")
