@@ -156,6 +156,50 @@ TEST_F(Forms, WhatLooksLikeAMishIsNone) {
          [&](int c, int y, int x) { return -In(c, y, x) * std::tanh(std::log1p(std::exp(In(c, y, x)))); });
 }
 
+// OpenCV takes the Mul for a swish or a celu, whatever the other operand is.
+TEST_F(Forms, WhatLooksLikeASwishOrACeluIsNone) {
+  const auto hard = [](double a) { return std::clamp(a / 6 + 0.5, 0.0, 1.0); };
+  const Attributes swish = {{"alpha", 1.0F / 6}, {"beta", 0.5F}};
+  for (const bool first : {false, true}) {
+    model_.Step("Neg", {"x"}, {"n"}).Step("HardSigmoid", {"n"}, {"h"}, swish);
+    model_.Step("Mul", {first ? "h" : "x", first ? "x" : "h"}, {"z"});
+    Expect("Mul", 3, kHeight, kWidth, [&](int c, int y, int x) { return In(c, y, x) * hard(-In(c, y, x)); });
+  }
+  model_.Step("HardSigmoid", {"x"}, {"z"}, swish);
+  Expect("HardSigmoid", 3, kHeight, kWidth, [&](int c, int y, int x) { return hard(In(c, y, x)); });
+  const auto elu = [](double a) { return a > 0 ? a : std::expm1(a); };
+  for (const bool constant : {false, true}) {
+    model_.Weights("two", {1}, {2}).Weights("three", {1}, {3}).Step("Div", {"x", "two"}, {"d"});
+    model_.Step("Elu", {"d"}, {"e"}).Step("Mul", {"e", constant ? "three" : "x"}, {"z"});
+    Expect("Mul", 3, kHeight, kWidth,
+           [&](int c, int y, int x) { return (constant ? 3 : In(c, y, x)) * elu(In(c, y, x) / 2); });
+  }
+}
+
+// As sums of squares and of exponentials are put in parts, here over values that are not those divided.
+TEST_F(Forms, WhatLooksLikeANormOrASoftmaxIsNone) {
+  const auto sum = [&](int y, int x, const std::function<double(double)>& of) {
+    return of(In(0, y, x)) + of(In(1, y, x)) + of(In(2, y, x));
+  };
+  const test::OnnxAttribute axes = {"axes", Ints{1}};
+  model_.Step("Neg", {"x"}, {"n"}).Step("Exp", {"n"}, {"e"}).Step("Exp", {"x"}, {"p"});
+  model_.Opset(12).Step("ReduceSum", {"p"}, {"s"}, {axes}).Step("Div", {"e", "s"}, {"z"});
+  Expect("exponentials", 3, kHeight, kWidth, [&](int c, int y, int x) {
+    return std::exp(-In(c, y, x)) / sum(y, x, [](double a) { return std::exp(a); });
+  });
+  model_.Weights("ten", {1}, {10}).Step("Add", {"x", "ten"}, {"p"}).Step("ReduceL2", {"p"}, {"s"}, {axes});
+  model_.Step("Div", {"x", "s"}, {"z"});
+  Expect("lengths", 3, kHeight, kWidth, [&](int c, int y, int x) {
+    return In(c, y, x) / std::sqrt(sum(y, x, [](double a) { return (a + 10) * (a + 10); }));
+  });
+  model_.Weights("ten", {1}, {10}).Step("Add", {"x", "ten"}, {"p"}).Step("Mul", {"p", "p"}, {"q"});
+  model_.Opset(12).Step("ReduceSum", {"q"}, {"r"}, {axes}).Step("Sqrt", {"r"}, {"s"});
+  model_.Step("Div", {"x", "s"}, {"z"});
+  Expect("roots", 3, kHeight, kWidth, [&](int c, int y, int x) {
+    return In(c, y, x) / std::sqrt(sum(y, x, [](double a) { return (a + 10) * (a + 10); }));
+  });
+}
+
 TEST_F(Forms, MapsAreMadeLargerByWholeFactors) {
   const auto resize = [&](float scale, const Attributes& attributes) {
     Attributes all = attributes;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <set>
 
 #include "engine/core/check.h"
 #include "engine/core/files/protobuf.h"
@@ -12,6 +13,11 @@
 namespace ed3r::perception {
 namespace {
 
+// OpenCV puts one step in the place of several that look like a softmax, a norm, a batch normalization, a swish, a celu or
+// a mish, and goes by the operators: not by whether the operands are those that the one step would take. Every pattern that
+// it looks for leads over an edge out of one of these.
+const std::set<std::string> kJoined = {"Elu", "Exp", "HardSigmoid", "ReduceL2", "Sqrt", "Tanh"};
+
 class Mender {
  public:
   Mender(std::string_view node, const OnnxSurroundings& around, const std::string& name)
@@ -19,19 +25,9 @@ class Mender {
 
   std::vector<std::string> Mended() const {
     if (step_.op == "Gemm") return Gemm();
-    const bool quotient = step_.op == "Div" && !around_.constants.contains(step_.inputs[0]) &&
-                          !around_.constants.contains(step_.inputs[1]);
-    if (quotient || step_.op == "Tanh") return Apart();
     if (step_.op == "AveragePool") CheckPadding();
-    if (step_.op == "Clip" && step_.inputs.size() > 1) return {Clip()};
-    if (step_.op.ends_with("Softmax") && around_.opset >= 13 && !step_.Has("axis"))
-      return {std::string(node_) + LastAxis()};
-    if (step_.op == "Split" && step_.inputs.size() > 1) return {WithList("split")};
-    const bool has_axes = step_.op.starts_with("Reduce") || step_.op == "Squeeze";
-    if (has_axes && step_.inputs.size() > 1) return {WithList("axes")};
-    if (step_.op == "LeakyRelu" && !step_.Has("alpha"))
-      return {std::string(node_) + NumberAttribute("alpha", 0.01F)};
-    return {std::string(node_)};
+    if (kJoined.contains(step_.op)) return Apart(OneNode());
+    return {OneNode()};
   }
 
  private:
@@ -39,26 +35,31 @@ class Mender {
     throw UserError(fmt::format("{}: operator {} {}", name_, step_.Text(), why));
   }
 
-  // OpenCV puts one step in the place of what looks like a softmax, a norm or a mish, and goes by the operators alone.
-  std::vector<std::string> Apart() const {
-    std::vector<std::string> nodes;
-    ProtobufWriter step;
-    ForEachField(node_, name_, [&](const ProtobufField& field) {
-      const bool computed =
-          field.number == onnx::kNodeInput && !around_.constants.contains(std::string(field.bytes));
-      if (!computed) {
+  std::string OneNode() const {
+    if (step_.op == "Clip" && step_.inputs.size() > 1) return Clip();
+    if (step_.op.ends_with("Softmax") && around_.opset >= 13 && !step_.Has("axis"))
+      return std::string(node_) + LastAxis();
+    if (step_.op == "Split" && step_.inputs.size() > 1) return WithList("split");
+    const bool has_axes = step_.op.starts_with("Reduce") || step_.op == "Squeeze";
+    if (has_axes && step_.inputs.size() > 1) return WithList("axes");
+    if (step_.op == "LeakyRelu" && !step_.Has("alpha"))
+      return std::string(node_) + NumberAttribute("alpha", 0.01F);
+    return std::string(node_);
+  }
+
+  // With an Identity behind it, so that what follows is no longer taken for the rest of a pattern.
+  std::vector<std::string> Apart(const std::string& node) const {
+    const std::string apart = step_.outputs.at(0) + " apart";
+    ProtobufWriter step, identity;
+    ForEachField(node, name_, [&](const ProtobufField& field) {
+      if (field.number == onnx::kNodeOutput)
+        step.Bytes(onnx::kNodeOutput, apart);
+      else
         step.Copy(field);
-        return;
-      }
-      const std::string apart = fmt::format("operand {} of {}", nodes.size(), step_.outputs.at(0));
-      ProtobufWriter identity;
-      identity.Bytes(onnx::kNodeInput, field.bytes).Bytes(onnx::kNodeOutput, apart);
-      identity.Bytes(onnx::kNodeName, apart).Bytes(onnx::kNodeOp, "Identity");
-      nodes.push_back(identity.bytes());
-      step.Bytes(onnx::kNodeInput, apart);
     });
-    nodes.push_back(step.bytes());
-    return nodes;
+    identity.Bytes(onnx::kNodeInput, apart).Bytes(onnx::kNodeOutput, step_.outputs.at(0));
+    identity.Bytes(onnx::kNodeName, apart).Bytes(onnx::kNodeOp, "Identity");
+    return {step.bytes(), identity.bytes()};
   }
 
   static std::string LastAxis() {

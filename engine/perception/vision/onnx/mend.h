@@ -7,7 +7,9 @@
 //   Clip          bounds that are inputs are not understood; here they become attributes, as of old
 //   Split, Squeeze, Reduce*
 //                 sizes or axes that are an input are passed over or refused; here they become an attribute
-//   Div, Tanh     are taken for parts of a softmax, a norm or a mish that they are not; here their operands stand apart
+//   Elu, Exp, HardSigmoid, ReduceL2, Sqrt, Tanh
+//                 are taken for parts of a softmax, a norm, a batch normalization, a swish, a celu or a mish that they are not;
+//                 here an Identity behind them breaks every such pattern
 //   Softmax       without an axis it is taken over side 1, which opset 13 no longer says; here it gets its axis
 //
 // tests/vision/operators_test.cc holds what detectors are made of against numbers worked out by hand.
