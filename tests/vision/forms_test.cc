@@ -232,11 +232,129 @@ TEST_F(Forms, WhatIsNotInTheTableIsRefused) {
   model_.Step("MaxPool", {"x"}, {"z"},
               {{"kernel_shape", Ints{2, 2}}, {"strides", Ints{3, 3}}, {"ceil_mode", std::int64_t{1}}});
   Refuses("has ceil_mode = 1 and a last window that begins beyond [1, 3, 9, 12]");
-  model_.Producer("pytorch").Step("AveragePool", {"x"}, {"z"},
-                                  {{"kernel_shape", Ints{3, 3}}, {"auto_pad", std::string("SAME_UPPER")}});
-  Refuses("has count_include_pad = 0, which OpenCV reads otherwise in a model of 'pytorch'");
   model_.Opset(24).Step("Relu", {"x"}, {"z"});
   Refuses("has operators of version (opset) 24; allowed: 6 .. 23");
+}
+
+TEST_F(Forms, ADivisorIsThatForNoOtherStep) {
+  model_.Weights("s", {1, 3, 1, 1}, {0.5F, 2.0F, 4.0F})
+      .Step("Div", {"x", "s"}, {"d"})
+      .Step("Neg", {"d"}, {"n"});
+  model_.Step("Div", {"n", "s"}, {"e"}).Step("Mul", {"e", "s"}, {"z"});
+  const double divisors[] = {0.5, 2.0, 4.0};
+  Expect("Div", 3, kHeight, kWidth, [&](int c, int y, int x) { return -In(c, y, x) / divisors[c]; });
+}
+
+TEST_F(Forms, ASideOfOneIsTheMiddleOrRefused) {
+  const auto resize = [&](const std::string& coordinates) {
+    model_.Integers("s", {1, 3, 1, kWidth})
+        .Step("Resize", {"x", "", "", "s"}, {"z"},
+              {{"mode", std::string("linear")}, {"coordinate_transformation_mode", coordinates}});
+  };
+  resize("half_pixel");
+  Expect("half_pixel", 3, 1, kWidth, [&](int c, int, int x) { return In(c, kHeight / 2, x); });
+  resize("align_corners");
+  Expect("align_corners", 3, 1, kWidth, [&](int c, int, int x) { return In(c, 0, x); });
+  resize("pytorch_half_pixel");
+  Refuses(
+      "makes 1 of side 2 of [1, 3, 9, 12]; allowed: scales that give whole heights and widths, with nearest");
+  model_.Integers("s", {1, 3, 29, kWidth})
+      .Step("Resize", {"x", "", "", "s"}, {"z"},
+            {{"mode", std::string("nearest")},
+             {"coordinate_transformation_mode", std::string("asymmetric")},
+             {"nearest_mode", std::string("floor")}});
+  Refuses("makes 29 of side 2 of [1, 3, 9, 12]; allowed: scales that give whole heights and widths");
+}
+
+TEST_F(Forms, AttributesOfAnotherKindAreRefused) {
+  model_.Weights("k", {3, 1, 1, 1}, {1, 1, 1});
+  const auto conv = [&](const test::OnnxAttribute& group) {
+    model_.Weights("k", {3, 1, 1, 1}, {1, 1, 1})
+        .Step("ConvTranspose", {"x", "k"}, {"z"}, {{"kernel_shape", Ints{1, 1}}, group});
+  };
+  const std::string group =
+      "operator ConvTranspose (node 'the ConvTranspose') has group that is not a whole number";
+  Begin();
+  conv({"group", 0.0F});
+  Refuses(group + "; allowed: a whole number");
+  conv({"group", std::string("all")});
+  Refuses(group);
+  conv({"group", Ints{3}});
+  Refuses(group);
+  model_.Step("Softmax", {"x"}, {"z"}, {{"axis", std::nanf("")}});
+  Refuses("operator Softmax (node 'the Softmax') has axis that is not a whole number");
+  model_.Step("Elu", {"x"}, {"z"}, {{"alpha", std::int64_t{2}}});
+  Refuses("operator Elu (node 'the Elu') has alpha that is not a float; allowed: a float");
+  model_.Step("MaxPool", {"x"}, {"z"}, {{"kernel_shape", std::int64_t{2}}});
+  Refuses("has kernel_shape that is not a list of whole numbers");
+}
+
+TEST_F(Forms, RefusalsShowNoMarksOfTheTable) {
+  model_.Step("Concat", {"x", "x"}, {"z"});
+  Refuses("operator Concat (node 'the Concat') has no axis; allowed: axis");
+  model_.Step("MaxPool", {"x"}, {"z"}, {{"kernel_shape", Ints{2, 2}}, {"padding", std::int64_t{1}}});
+  Refuses(
+      "has padding = 1; allowed attributes: kernel_shape, strides, pads, auto_pad = NOTSET or VALID or "
+      "SAME_UPPER, ceil_mode, count_include_pad, storage_order = 0, dilations = 1");
+  model_.Opset(10).Weights("s", {4}, {1, 1, 2, 2});
+  model_.Step("Resize", {"x", "s"}, {"z"}, {{"mode", std::string("linear")}});
+  Refuses("operator Resize (node 'the Resize') has mode = linear; allowed: nearest");
+}
+
+// As PyTorch writes shared weights, views and squeezed means.
+TEST_F(Forms, WhatExportersWriteIsRead) {
+  const auto whole = [&](int c, int y, int x) { return In(c, y, x); };
+  model_.Opset(14).Integers("s", {1, 3, kHeight, -1});
+  model_.Step("Reshape", {"x", "s"}, {"z"}, {{"allowzero", std::int64_t{1}}});
+  Expect("Reshape", 3, kHeight, kWidth, whole);
+  model_.Opset(14).Integers("s", {0, 3, kHeight, kWidth});
+  model_.Step("Reshape", {"x", "s"}, {"z"}, {{"allowzero", std::int64_t{1}}});
+  Refuses("makes [0, 3, 9, 12] with allowzero = 1: of nothing; allowed: sides from 1 on, or one of -1");
+
+  model_.Weights("s", {1, 3, 1, 1}, {0.5F, 2.0F, 4.0F}).Step("Identity", {"s"}, {"t"});
+  model_.Step("Identity", {"t"}, {"u"}).Step("Mul", {"x", "u"}, {"z"});
+  const double factors[] = {0.5, 2.0, 4.0};
+  Expect("Identity", 3, kHeight, kWidth, [&](int c, int y, int x) { return In(c, y, x) * factors[c]; });
+
+  model_.Step("ReduceMean", {"x"}, {"m"}, {{"axes", Ints{3}}}).Integers("a", {-1});
+  model_.Step("Squeeze", {"m", "a"}, {"z"});
+  Expect("Squeeze", 3, kHeight, 1, [&](int c, int y, int) {
+    double sum = 0.0;
+    for (int i = 0; i < kWidth; ++i) sum += In(c, y, i);
+    return sum / kWidth;
+  });
+
+  model_.Weights("one", {3}, {1, 1, 1}).Weights("nought", {3}, {0, 0, 0});
+  model_.Step("InstanceNormalization", {"x", "one", "nought"}, {"z"});
+  Expect("InstanceNormalization", 3, kHeight, kWidth, [&](int c, int y, int x) {
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < kHeight * kWidth; ++i) {
+      const double value = In(c, i / kWidth, i % kWidth);
+      sum += value / (kHeight * kWidth), squares += value * value / (kHeight * kWidth);
+    }
+    return (In(c, y, x) - sum) / std::sqrt(squares - sum * sum + 1e-5);
+  });
+}
+
+// 9 / 2 = 4 rows of 81 values each, averaged.
+TEST_F(Forms, SizesAreDividedAsWholeNumbers) {
+  const auto rows = [&](bool floats) {
+    model_.Integers("at", {2}).Integers("two", {2}).Integers("rest", {-1}).Step("Shape", {"x"}, {"sides"});
+    model_.Step("Gather", {"sides", "at"}, {"h"});
+    if (floats) model_.Step("Cast", {"h"}, {"f"}, {{"to", std::int64_t{1}}});
+    model_.Step("Div", {floats ? "f" : "h", "two"}, {"half"});
+    model_.Step("Concat", {"half", "rest"}, {"shape"}, {{"axis", std::int64_t{0}}});
+    model_.Step("Reshape", {"x", "shape"}, {"r"}).Step("ReduceMean", {"r"}, {"z"}, {{"axes", Ints{1}}});
+  };
+  rows(false);
+  Expect("Div", 1, 4, 1, [&](int, int row, int) {
+    double sum = 0.0;
+    for (int i = row * 81; i < (row + 1) * 81; ++i)
+      sum += In(i / (kHeight * kWidth), i / kWidth % kHeight, i % kWidth);
+    return sum / 81;
+  });
+  rows(true);
+  Refuses("operator Div (node 'the Div') divides sizes that were made float; allowed: int64");
 }
 
 }  // namespace

@@ -182,14 +182,20 @@ TEST_F(Operators, AveragesCountTheirPaddingAsTheModelSays) {
     model_.Producer(producer).Step("AveragePool", {"frame"}, {"p"}, attributes);
     model_.Step("Flatten", {"p"}, {"y"}, {{"axis", std::int64_t{1}}});
   };
-  pool(false, "tool");
-  Expect({16.0 / 256, 17.5 / 256});
-  pool(true, "pytorch");
-  Expect({16.0 / 4 / 256, 17.5 / 2 / 256});
-  pool(true, "tool");
-  ExpectRefusal("operator AveragePool (node 'the AveragePool') has count_include_pad = 1");
-  pool(false, "pytorch");
-  ExpectRefusal("has count_include_pad = 0, which OpenCV reads otherwise in a model of 'pytorch'");
+  for (const std::string producer : {"tool", "pytorch"}) {
+    pool(false, producer);
+    Expect({16.0 / 256, 17.5 / 256});
+    pool(true, producer);
+    Expect({16.0 / 4 / 256, 17.5 / 2 / 256});
+  }
+  model_ = test::OnnxWriter().Input("frame", {1, 3, 8, 8}).Output("y", {1, 192});
+  const std::vector<test::OnnxAttribute> window = {{"kernel_shape", Ints{3, 3}}, {"pads", Ints{1, 1, 1, 1}}};
+  std::vector<test::OnnxAttribute> counting = window;
+  counting.push_back({"count_include_pad", std::int64_t{1}});
+  model_.Step("AveragePool", {"frame"}, {"p"}, window).Step("AveragePool", {"p"}, {"q"}, counting);
+  model_.Step("Flatten", {"q"}, {"y"}, {{"axis", std::int64_t{1}}});
+  ExpectRefusal(
+      "operator AveragePool (node 'the AveragePool') has count_include_pad = 1, and one before it has not");
 }
 
 TEST_F(Operators, WindowsThatDoNotFitAreCutOrCounted) {

@@ -283,6 +283,37 @@ TEST_F(OwnDetector, WeightsInAFileBesideAreRead) {
   ExpectRefusal(WithWeightsOutside("mine.onnx.data", "-8", "24"), {"offset '-8'", "a whole number"});
 }
 
+// What protocol buffers skip as unknown, OpenCV would find missing.
+TEST_F(OwnDetector, NumbersWrittenInOtherFieldsAreRefused) {
+  const auto said = [&](std::string bytes, const std::string& found, const std::string& instead) {
+    const std::size_t at = bytes.find(found);
+    EXPECT_NE(at, std::string::npos);
+    Write("mine.onnx", bytes.replace(at, found.size(), instead));
+    try {
+      LoadDetectors(config_);
+    } catch (const UserError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  const std::string name = "perception.detector.full: " + config_.full;
+  test::OnnxWriter pool;
+  pool.Input("frame", {1, 3, 54, 96}).Output("y", {1, 2});
+  pool.Step("MaxPool", {"frame"}, {"p"},
+            {{"kernel_shape", std::vector<std::int64_t>{2, 2}}, {"strides", 0.0F}});
+  test::AddRedMinusBlue(pool, "p");
+  EXPECT_EQ(said(pool.Bytes(), "strides\x15", "strides\x45"),
+            name + ": has a list of whole numbers that are none; allowed: int64");
+  EXPECT_EQ(
+      said(pool.Bytes(), "strides\x15", "strides\x15"),
+      name +
+          ": operator MaxPool (node 'the MaxPool') has strides that is not a list of whole numbers; allowed: "
+          "a list of whole numbers");
+  // The weights 'b' of two floats, as int32s.
+  EXPECT_EQ(said(test::RedMinusBlue({1, 3, 54, 96}).Bytes(), "\x42\x01\x62\x4a\x08", "\x42\x01\x62\x2a\x08"),
+            name + ": has a tensor 'b' of 2 elements with 0 values");
+}
+
 TEST_F(OwnDetector, OperatorsThatCannotBeRunAreNamed) {
   const auto ends_with = [](const std::string& op, const std::string& domain = "") {
     test::OnnxWriter model;

@@ -64,10 +64,13 @@ class Arranged : public ShapeStep {
   OnnxSides Reshape() const {
     OnnxSides out = Numbers(1, "shape");
     std::int64_t known = 1;
+    if (node_.Number("allowzero", 0) != 0 && std::count(out.begin(), out.end(), 0) != 0)
+      Refuse(fmt::format("makes {} with allowzero = 1: of nothing", Text(out)),
+             "sides from 1 on, or one of -1");
     for (std::size_t i = 0; i < out.size(); ++i) {
       if (out[i] == 0 && i < X().size()) out[i] = X()[i];
       if (out[i] != -1) known *= out[i];
-      if (known <= 0 || known > kMostElements)
+      if (known <= 0 || known > onnx::kMostElements)
         Refuse(fmt::format("makes {}", Text(out)), "as many numbers as there are");
     }
     const std::int64_t all = Count(X());
@@ -84,7 +87,6 @@ class Arranged : public ShapeStep {
     const std::vector<std::int64_t> axes = Numbers(1, "axes");
     if (axes.empty()) Refuse("has no axes", "axes in numbers");
     for (const std::int64_t axis : axes) {
-      if (axis < 0) Refuse(fmt::format("has the axis {}", axis), "axes from 0 on");
       std::int64_t& side = out[Axis(axis, X().size())];
       if (side != 1) Refuse(fmt::format("has the axis {} of {}", axis, Text(X())), "sides of 1");
       side = 0;
@@ -210,7 +212,7 @@ class Arranged : public ShapeStep {
     const std::vector<double> asked = Asked();
     OnnxSides out = X();
     for (std::size_t i = 0; i < 4; ++i) {
-      if (!(asked[i] >= 1.0 && asked[i] < static_cast<double>(kMostElements)))
+      if (!(asked[i] >= 1.0 && asked[i] < static_cast<double>(onnx::kMostElements)))
         Refuse(fmt::format("makes {:g} of a side", asked[i]), "1 or more");
       constexpr double kSingle = 1e-5;  // of a scale
       const bool whole = std::abs(asked[i] - std::round(asked[i])) < kSingle * asked[i];
@@ -218,7 +220,7 @@ class Arranged : public ShapeStep {
       if (out[i] < 1 || (i < 2 && out[i] != X()[i]) || !IsRead(X()[i], out[i], whole))
         Refuse(fmt::format("makes {:g} of side {} of {}", asked[i], i, Text(X())),
                "scales that give whole heights and widths, with nearest whole multiples (doubled, with "
-               "round_prefer_floor)");
+               "round_prefer_floor), with pytorch_half_pixel 2 or more");
     }
     return out;
   }
@@ -243,9 +245,11 @@ class Arranged : public ShapeStep {
   // OpenCV goes by the sizes, and always by the floor of asymmetric coordinates.
   bool IsRead(std::int64_t from, std::int64_t to, bool whole) const {
     const std::string coordinates = node_.Word("coordinate_transformation_mode", "half_pixel");
+    if (coordinates == "pytorch_half_pixel" && to == 1 && from > 1)
+      return false;  // the first, not the middle
     if (node_.Word("mode", "nearest") == "linear") return whole || coordinates == "align_corners";
     if (node_.inputs.size() == 2 || node_.Word("nearest_mode", "") == "floor")
-      return whole && (to % from == 0 || from % to == 0 || node_.HasInput(3));
+      return whole && (to % from == 0 || from % to == 0);
     return whole && to % from == 0 && (coordinates == "half_pixel" || to <= 2 * from);
   }
 };

@@ -104,7 +104,7 @@ class Computed : public ShapeStep {
     AskRank(weights, 4, 4);
     const std::int64_t in = transposed ? weights[0] : weights[1] * group,
                        out = transposed ? weights[1] * group : weights[0];
-    if (in != X()[1] || out % group != 0 || in % group != 0 || weights[2] != kernel[0] ||
+    if (group < 1 || in != X()[1] || out % group != 0 || in % group != 0 || weights[2] != kernel[0] ||
         weights[3] != kernel[1])
       Refuse(fmt::format("has weights {} in {} groups for {}", Text(weights), group, Text(X())),
              "as many channels, and kernel_shape");

@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxDepth = 16;  // of graphs within nodes
-
 // Where a tensor's values lie.
 struct Place {
   std::string file;
@@ -59,7 +57,7 @@ class Inliner {
   }
 
   std::string Graph(std::string_view bytes, int depth) {
-    if (depth > kMaxDepth) Refuse("has graphs within graphs without end");
+    if (depth > onnx::kMaxDepth) Refuse("has graphs within graphs without end");
     return Copied(bytes, [&](const ProtobufField& field, ProtobufWriter& out) {
       if (!field.IsBytes() || (field.number != onnx::kNode && field.number != onnx::kInitializer))
         return false;

@@ -3,6 +3,10 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/files/protobuf.h"
 
 namespace ed3r::perception::onnx {
 
@@ -36,7 +40,9 @@ enum AttributeField : std::uint32_t {
   kAttributeText = 4,
   kAttributeTensor = 5,
   kAttributeGraph = 6,
+  kAttributeFloats = 7,
   kAttributeInts = 8,
+  kAttributeTexts = 9,
   kAttributeTensors = 10,
   kAttributeGraphs = 11,
   kAttributeType = 20
@@ -66,10 +72,20 @@ enum ValueField : std::uint32_t {
   kDimName = 2
 };
 
-inline constexpr std::uint64_t kTypeOfFloat = 1, kTypeOfInt = 2, kTypeOfInts = 7;  // of attributes
+inline constexpr std::uint64_t kTypeOfFloat = 1, kTypeOfInt = 2, kTypeOfTensor = 4,
+                               kTypeOfInts = 7;  // of attributes
 inline constexpr std::uint64_t kFloat = 1, kInt32 = 6, kInt64 = 7, kFloat16 = 10, kDouble = 11;
 inline constexpr std::uint64_t kLiesOutside = 1;  // of kLocation
 inline constexpr std::int64_t kOpenSide = -1;     // what some exporters write for a side that is left open
+
+inline constexpr std::int64_t kMostElements = 1 << 28;  // of a tensor: a gigabyte of floats
+inline constexpr int kMaxDepth = 16;                    // of graphs within nodes
+
+// Appends the whole numbers of a list's field, which stand one by one or packed. `name` begins messages. Throws UserError for
+// other bytes, and for more than a million numbers.
+void Append(const ProtobufField& field, const std::string& name, std::vector<std::int64_t>& numbers);
+
+std::string TensorName(std::string_view tensor, const std::string& name);
 
 // "float16"; "of the number 99" for what no version of the format has.
 std::string TypeName(std::uint64_t type);

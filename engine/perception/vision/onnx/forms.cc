@@ -99,7 +99,7 @@ constexpr Form kForms[] = {
     {"ReduceSum", "xi?", kReduce, OnnxRule::kReduce},
     {"ReduceSumSquare", "xi?", kReduce, OnnxRule::kReduce},
     {"Relu", "x", kNothing, OnnxRule::kSame},
-    {"Reshape", "xn", "allowzero=0", OnnxRule::kReshape},
+    {"Reshape", "xn", "allowzero=0|1", OnnxRule::kReshape},
     {"Resize", "xc|xc?c|xc?-i|xc?ci", kNearest, OnnxRule::kResize},
     {"Resize", "xc|xc?c|xc?-i|xc?ci", kNearestHalf, OnnxRule::kResize},
     {"Resize", "xc?c|xc?-i|xc?ci", kLinear, OnnxRule::kResize},
@@ -127,6 +127,14 @@ constexpr Form kForms[] = {
     {"Unsqueeze", "ni?", "axes", OnnxRule::kNumbers},
     {"Upsample", "xc", "mode=nearest!", OnnxRule::kResize},
 };
+
+// What attributes hold by their names; whole numbers for those that are in none.
+constexpr std::string_view kFloats[] = {
+    "alpha", "beta", "bias",     "cubic_coeff_a", "epsilon", "extrapolation_value", "gamma", "lambd",
+    "max",   "min",  "momentum", "ratio",         "value"};
+constexpr std::string_view kLists[] = {"axes", "dilations", "ends",  "kernel_shape", "output_padding",
+                                       "pads", "perm",      "split", "starts",       "strides"};
+constexpr std::string_view kTexts[] = {"auto_pad", "coordinate_transformation_mode", "mode", "nearest_mode"};
 
 std::vector<std::string> Parted(std::string_view text, char by) {
   std::vector<std::string> parts;
@@ -193,6 +201,33 @@ std::string RuleFor(const Form& form, const std::string& attribute) {
   return "";
 }
 
+// What is wrong with what the attribute holds: OpenCV takes for 0 what it does not look for there.
+std::string WrongKind(const OnnxNode& node, const std::string& name, OnnxHeld held) {
+  const auto is_in = [&](const auto& names) {
+    return std::find(std::begin(names), std::end(names), name) != std::end(names);
+  };
+  std::pair<OnnxHeld, const char*> wanted = {OnnxHeld::kInt, "a whole number"};
+  if (is_in(kFloats)) wanted = {OnnxHeld::kFloat, "a float"};
+  if (is_in(kLists)) wanted = {OnnxHeld::kInts, "a list of whole numbers"};
+  if (is_in(kTexts)) wanted = {OnnxHeld::kText, "a text"};
+  if (node.op == "Constant") wanted = {OnnxHeld::kTensor, "a tensor"};
+  if (held == wanted.first || held == OnnxHeld::kNothing) return "";
+  return fmt::format("has {} that is not {}; allowed: {}", name, wanted.second, wanted.second);
+}
+
+// "auto_pad = NOTSET or VALID, group".
+std::string Plain(std::string_view attributes) {
+  std::vector<std::string> words;
+  for (std::string part : Parted(attributes, ' ')) {
+    if (part.ends_with('!')) part.pop_back();
+    const std::size_t equals = part.find('=');
+    words.push_back(part.substr(0, equals));
+    if (equals != std::string::npos)
+      words.back() += fmt::format(" = {}", fmt::join(Parted(part.substr(equals + 1), '|'), " or "));
+  }
+  return attributes.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
+}
+
 // Nothing if all is as the form says.
 std::optional<Mismatch> MismatchOf(const Form& form, const OnnxNode& node, const std::string& kinds) {
   std::string why;
@@ -208,7 +243,9 @@ std::optional<Mismatch> MismatchOf(const Form& form, const OnnxNode& node, const
     });
     if (rule.empty())
       why = fmt::format("has {} = {}; allowed attributes: {}", name, fmt::join(values, ", "),
-                        form.attributes.empty() ? "none" : form.attributes);
+                        Plain(form.attributes));
+    else if (const std::string wrong = WrongKind(node, name, attribute.held); !wrong.empty())
+      why = wrong;
     else if (equals != std::string::npos && stray != values.end())
       why = fmt::format("has {} = {}; allowed: {}", name, *stray, fmt::join(allowed, ", "));
     else
@@ -216,7 +253,8 @@ std::optional<Mismatch> MismatchOf(const Form& form, const OnnxNode& node, const
   }
   for (const std::string& part : Parted(form.attributes, ' ')) {
     const std::string name = part.substr(0, part.find_first_of("=!"));
-    if (part.ends_with('!') && !node.Has(name)) why = fmt::format("has no {}; allowed: {}", name, part);
+    if (part.ends_with('!') && !node.Has(name) && why.empty())
+      why = fmt::format("has no {}; allowed: {}", name, Plain(part));
   }
   const std::vector<std::string> inputs = Parted(form.inputs, '|');
   if (std::any_of(inputs.begin(), inputs.end(),

@@ -1,5 +1,6 @@
-// The forms of ONNX operators that have been checked against the standard as OpenCV 4.6 reads them (and as mend.h puts
-// them for it). What is not in the table is refused: OpenCV reads many other forms otherwise, and says nothing.
+// The forms of ONNX operators that have been checked against the standard as OpenCV 4.6 reads them: one by one, in the shapes
+// that shapes.h allows, put as mend.h and rewrite.h say. What is not in the table is refused: OpenCV reads many other forms
+// otherwise, and says nothing. It also puts one step in the place of several, which mend.h prevents.
 #pragma once
 
 #include <string>

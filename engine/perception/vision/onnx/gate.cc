@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "engine/core/check.h"
@@ -15,8 +16,6 @@ namespace ed3r::perception {
 namespace {
 
 constexpr std::int64_t kMaxDimension = 1 << 24;
-constexpr std::int64_t kMaxElements = 1 << 28;  // of a tensor: a gigabyte of floats
-constexpr int kMaxDepth = 16;                   // of graphs within nodes
 
 class Gate {
  public:
@@ -43,20 +42,8 @@ class Gate {
     ForEachField(bytes, name_, visit);
   }
 
-  // Numbers stand one by one or packed.
-  void Append(const ProtobufField& field, std::vector<std::int64_t>& numbers) const {
-    constexpr std::size_t kMost = 1 << 20;
-    if (numbers.size() + field.bytes.size() > kMost) Refuse("has a list of more than a million numbers");
-    if (field.wire == ProtobufField::Wire::kNumber) {
-      numbers.push_back(static_cast<std::int64_t>(field.value));
-      return;
-    }
-    for (std::string_view packed = field.IsBytes() ? field.bytes : ""; !packed.empty();)
-      numbers.push_back(static_cast<std::int64_t>(TakeVarint(packed, name_)));
-  }
-
   void CheckGraph(std::string_view bytes, int depth) const {
-    if (depth > kMaxDepth) Refuse("has graphs within graphs without end");
+    if (depth > onnx::kMaxDepth) Refuse("has graphs within graphs without end");
     ForEach(bytes, [&](const ProtobufField& field) {
       if (!field.IsBytes()) return;
       if (field.number == onnx::kSparseInitializer) Refuse("has sparse weights; allowed: dense ones");
@@ -77,7 +64,8 @@ class Gate {
     std::string_view name;
     std::vector<std::int64_t> numbers;
     ForEach(bytes, [&](const ProtobufField& field) {
-      if (field.number == onnx::kAttributeInt || field.number == onnx::kAttributeInts) Append(field, numbers);
+      if (field.number == onnx::kAttributeInt || field.number == onnx::kAttributeInts)
+        onnx::Append(field, name_, numbers);
       if (!field.IsBytes()) return;
       if (field.number == onnx::kAttributeName) name = field.bytes;
       if (field.number == onnx::kAttributeTensor || field.number == onnx::kAttributeTensors)
@@ -104,11 +92,11 @@ class Gate {
   std::int64_t Elements(const std::vector<std::int64_t>& dims, std::string_view what) const {
     std::int64_t elements = 1;
     for (const std::int64_t dim : dims) {
-      if (dim < 0 || dim > kMaxDimension || (dim > 0 && elements > kMaxElements / dim))
+      if (dim < 0 || dim > kMaxDimension || (dim > 0 && elements > onnx::kMostElements / dim))
         Refuse(fmt::format(
             "has {} with the shape [{}]; allowed: sides of 0 .. {}, at most {} elements", what,
             fmt::join(dims.begin(), dims.begin() + std::min<std::ptrdiff_t>(8, std::ssize(dims)), ", "),
-            kMaxDimension, kMaxElements));
+            kMaxDimension, onnx::kMostElements));
       elements *= dim;
     }
     return elements;
@@ -116,20 +104,17 @@ class Gate {
 
   // Values that a field of a tensor lists, one by one or packed.
   static std::size_t Listed(const ProtobufField& field) {
+    using Wire = ProtobufField::Wire;
     switch (field.number) {
       case onnx::kFloats:
-        return field.bytes.size() / 4;
+        return field.IsBytes() || field.wire == Wire::kFixed32 ? field.bytes.size() / 4 : 0;
       case onnx::kDoubles:
-        return field.bytes.size() / 8;
-      case onnx::kInt32s:
-      case onnx::kInt64s:
-      case onnx::kUint64s:
-        if (field.wire == ProtobufField::Wire::kNumber) return 1;
+        return field.IsBytes() || field.wire == Wire::kFixed64 ? field.bytes.size() / 8 : 0;
+      default:
+        if (!field.IsBytes()) return field.wire == Wire::kNumber ? 1 : 0;
         return static_cast<std::size_t>(std::count_if(field.bytes.begin(), field.bytes.end(), [](char c) {
           return static_cast<unsigned char>(c) < 0x80;  // the last byte of a number
         }));
-      default:
-        return 0;
     }
   }
 
@@ -137,14 +122,15 @@ class Gate {
     std::vector<std::int64_t> dims;
     std::string_view name;
     std::uint64_t type = 0;
-    std::size_t raw = 0, listed = 0;
+    std::size_t raw = 0;
+    std::map<std::uint32_t, std::size_t> lists;  // by the field
     bool has_raw = false;
     ForEach(bytes, [&](const ProtobufField& field) {
-      if (field.number == onnx::kDims) Append(field, dims);
+      if (field.number == onnx::kDims) onnx::Append(field, name_, dims);
       if (field.number == onnx::kTensorName && field.IsBytes()) name = field.bytes;
       if (field.number == onnx::kType) type = field.value;
       if (field.number == onnx::kRaw && field.IsBytes()) raw = field.bytes.size(), has_raw = true;
-      listed += Listed(field);
+      lists[field.number] += Listed(field);
       if (field.number == onnx::kLocation && field.value == onnx::kLiesOutside)
         Refuse("keeps weights in another file (external data)");
     });
@@ -155,7 +141,23 @@ class Gate {
     if (size == 0)
       Refuse(fmt::format("has a tensor '{}' of {}; allowed: float, double, float16, integers", name,
                          onnx::TypeName(type)));
-    const bool fits = has_raw ? raw == static_cast<std::size_t>(elements) * size
+    // OpenCV reads the list of the type's own, and before raw bytes.
+    constexpr std::array<std::uint32_t, 14> kList = {0,
+                                                     onnx::kFloats,
+                                                     onnx::kInt32s,
+                                                     onnx::kInt32s,
+                                                     onnx::kInt32s,
+                                                     onnx::kInt32s,
+                                                     onnx::kInt32s,
+                                                     onnx::kInt64s,
+                                                     0,
+                                                     onnx::kInt32s,
+                                                     onnx::kInt32s,
+                                                     onnx::kDoubles,
+                                                     onnx::kUint64s,
+                                                     onnx::kUint64s};
+    const std::size_t listed = lists[kList[type]];
+    const bool fits = has_raw ? raw == static_cast<std::size_t>(elements) * size && listed == 0
                               : listed >= static_cast<std::size_t>(elements);
     if (!fits)
       Refuse(fmt::format("has a tensor '{}' of {} elements with {} {}", name, elements,
@@ -173,7 +175,7 @@ class Gate {
           ForEachIn(tensor, onnx::kTensorShape, [&](std::string_view shape) {
             ForEachIn(shape, onnx::kShapeDim, [&](std::string_view dim) {
               ForEach(dim, [&](const ProtobufField& value) {
-                if (value.number == onnx::kDimValue) Append(value, dims);
+                if (value.number == onnx::kDimValue) onnx::Append(value, name_, dims);
               });
             });
           });

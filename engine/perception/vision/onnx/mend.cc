@@ -20,12 +20,11 @@ const std::set<std::string> kJoined = {"Elu", "Exp", "HardSigmoid", "ReduceL2", 
 
 class Mender {
  public:
-  Mender(std::string_view node, const OnnxSurroundings& around, const std::string& name)
-      : node_(node), around_(around), name_(name), step_(NodeOf(node, name)) {}
+  Mender(std::string_view node, std::size_t rank, const OnnxSurroundings& around, const std::string& name)
+      : node_(node), rank_(rank), around_(around), name_(name), step_(NodeOf(node, name)) {}
 
   std::vector<std::string> Mended() const {
     if (step_.op == "Gemm") return Gemm();
-    if (step_.op == "AveragePool") CheckPadding();
     if (kJoined.contains(step_.op)) return Apart(OneNode());
     return {OneNode()};
   }
@@ -40,8 +39,10 @@ class Mender {
     if (step_.op.ends_with("Softmax") && around_.opset >= 13 && !step_.Has("axis"))
       return std::string(node_) + LastAxis();
     if (step_.op == "Split" && step_.inputs.size() > 1) return WithList("split");
-    const bool has_axes = step_.op.starts_with("Reduce") || step_.op == "Squeeze";
-    if (has_axes && step_.inputs.size() > 1) return WithList("axes");
+    if (step_.op.starts_with("Reduce") && step_.inputs.size() > 1) return WithList("axes");
+    if (step_.op == "Squeeze") return Squeeze();
+    if (step_.op == "InstanceNormalization" && !step_.Has("epsilon"))
+      return std::string(node_) + NumberAttribute("epsilon", 1e-5F);
     if (step_.op == "LeakyRelu" && !step_.Has("alpha"))
       return std::string(node_) + NumberAttribute("alpha", 0.01F);
     return std::string(node_);
@@ -92,25 +93,12 @@ class Mender {
     return {transpose.bytes(), gemm.bytes()};
   }
 
-  void CheckPadding() const {
-    const std::vector<std::int64_t> pads = step_.Numbers("pads");
-    const bool padded = step_.Word("auto_pad", "") == "SAME_UPPER" ||
-                        std::any_of(pads.begin(), pads.end(), [](std::int64_t pad) { return pad != 0; });
-    if (!padded) return;
-    const bool counts = step_.Number("count_include_pad", 0) != 0,
-               opencv_counts = around_.producer == "pytorch";
-    if (counts != opencv_counts)
-      Refuse(
-          fmt::format("has count_include_pad = {}, which OpenCV reads otherwise in a model of '{}'; allowed: "
-                      "a Pad before "
-                      "an AveragePool without pads",
-                      counts ? 1 : 0, around_.producer));
-  }
-
-  std::string WithFirstInput() const {
+  // Without the inputs behind the first, and where it is to be bare without its attributes.
+  std::string WithFirstInput(bool bare = false) const {
     ProtobufWriter node;
     int input = 0;
     ForEachField(node_, name_, [&](const ProtobufField& field) {
+      if (bare && field.number == onnx::kNodeAttribute) return;
       if (field.number != onnx::kNodeInput || input++ == 0) node.Copy(field);
     });
     return node.bytes();
@@ -120,13 +108,24 @@ class Mender {
   std::string WithList(const std::string& attribute) const {
     if (step_.inputs[1].empty()) return WithFirstInput();
     const std::vector<std::int64_t>& list = around_.constants.at(step_.inputs[1]).whole;
-    if (list.empty()) return WithFirstInput();
+    return list.empty() ? WithFirstInput() : WithFirstInput() + ListAttribute(attribute, list);
+  }
+
+  std::string Squeeze() const {
+    std::vector<std::int64_t> axes =
+        step_.HasInput(1) ? around_.constants.at(step_.inputs[1]).whole : step_.Numbers("axes");
+    for (std::int64_t& axis : axes)
+      if (axis < 0) axis += static_cast<std::int64_t>(rank_);
+    return WithFirstInput(true) + ListAttribute("axes", axes);
+  }
+
+  static std::string ListAttribute(const std::string& name, const std::vector<std::int64_t>& list) {
     ProtobufWriter numbers, field;
-    numbers.Bytes(onnx::kAttributeName, attribute);
+    numbers.Bytes(onnx::kAttributeName, name);
     for (const std::int64_t number : list)
       numbers.Number(onnx::kAttributeInts, static_cast<std::uint64_t>(number));
     numbers.Number(onnx::kAttributeType, onnx::kTypeOfInts);
-    return WithFirstInput() + field.Bytes(onnx::kNodeAttribute, numbers.bytes()).bytes();
+    return field.Bytes(onnx::kNodeAttribute, numbers.bytes()).bytes();
   }
 
   std::string Clip() const {
@@ -151,6 +150,7 @@ class Mender {
   }
 
   std::string_view node_;
+  std::size_t rank_;
   const OnnxSurroundings& around_;
   const std::string& name_;
   OnnxNode step_;
@@ -158,9 +158,9 @@ class Mender {
 
 }  // namespace
 
-std::vector<std::string> Mended(std::string_view node, const OnnxSurroundings& around,
+std::vector<std::string> Mended(std::string_view node, std::size_t rank, const OnnxSurroundings& around,
                                 const std::string& name) {
-  return Mender(node, around, name).Mended();
+  return Mender(node, rank, around, name).Mended();
 }
 
 }  // namespace ed3r::perception

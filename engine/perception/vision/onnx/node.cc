@@ -10,13 +10,6 @@
 namespace ed3r::perception {
 namespace {
 
-// Whole numbers stand one by one or packed.
-void Append(const ProtobufField& field, const std::string& name, std::vector<std::int64_t>& numbers) {
-  if (!field.IsBytes()) numbers.push_back(static_cast<std::int64_t>(field.value));
-  for (std::string_view packed = field.IsBytes() ? field.bytes : ""; !packed.empty();)
-    numbers.push_back(static_cast<std::int64_t>(TakeVarint(packed, name)));
-}
-
 template <class Number, class To>
 void AppendRaw(std::string_view bytes, std::vector<To>& numbers) {
   for (std::size_t i = 0; i + sizeof(Number) <= bytes.size(); i += sizeof(Number)) {
@@ -26,20 +19,49 @@ void AppendRaw(std::string_view bytes, std::vector<To>& numbers) {
   }
 }
 
+// What the field of an attribute gives it; nothing for its name and the like.
+OnnxHeld HeldIn(const ProtobufField& field) {
+  const bool number = field.wire == ProtobufField::Wire::kNumber;
+  switch (field.number) {
+    case onnx::kAttributeFloat:
+      return field.wire == ProtobufField::Wire::kFixed32 ? OnnxHeld::kFloat : OnnxHeld::kElse;
+    case onnx::kAttributeInt:
+      return number ? OnnxHeld::kInt : OnnxHeld::kElse;
+    case onnx::kAttributeInts:
+      return number || field.IsBytes() ? OnnxHeld::kInts : OnnxHeld::kElse;
+    case onnx::kAttributeText:
+      return field.IsBytes() ? OnnxHeld::kText : OnnxHeld::kElse;
+    case onnx::kAttributeTensor:
+      return field.IsBytes() ? OnnxHeld::kTensor : OnnxHeld::kElse;
+    case onnx::kAttributeGraph:
+    case onnx::kAttributeFloats:
+    case onnx::kAttributeTexts:
+    case onnx::kAttributeTensors:
+    case onnx::kAttributeGraphs:
+      return OnnxHeld::kElse;
+    default:
+      return OnnxHeld::kNothing;
+  }
+}
+
 void ReadAttribute(std::string_view bytes, const std::string& name, OnnxNode& node) {
   std::string key;
   OnnxAttribute attribute;
   ForEachField(bytes, name, [&](const ProtobufField& field) {
     if (field.number == onnx::kAttributeName && field.IsBytes()) key = field.bytes;
-    if (field.number == onnx::kAttributeFloat && field.wire == ProtobufField::Wire::kFixed32) {
+    const OnnxHeld held = HeldIn(field);
+    if (held == OnnxHeld::kNothing) return;
+    const bool mixed = attribute.held != OnnxHeld::kNothing && attribute.held != held;
+    attribute.held = mixed ? OnnxHeld::kElse : held;
+    if (held == OnnxHeld::kFloat) {
       std::vector<float> number;
       AppendRaw<float>(field.bytes, number);
       attribute.number = static_cast<double>(number.at(0));
     }
-    if (field.number == onnx::kAttributeInt)
+    if (held == OnnxHeld::kInt)
       attribute.number = static_cast<double>(static_cast<std::int64_t>(field.value));
-    if (field.number == onnx::kAttributeText && field.IsBytes()) attribute.text = field.bytes;
-    if (field.number == onnx::kAttributeInts) Append(field, name, attribute.numbers);
+    if (held == OnnxHeld::kText) attribute.text = field.bytes;
+    if (held == OnnxHeld::kInts) onnx::Append(field, name, attribute.numbers);
   });
   node.attributes[key] = std::move(attribute);
 }
@@ -94,14 +116,15 @@ OnnxConstant ConstantOf(std::string_view tensor, const std::string& name) {
   std::int64_t elements = 1;
   ForEachField(tensor, name, [&](const ProtobufField& field) {
     if (field.number == onnx::kType) constant.type = field.value;
-    if (field.number == onnx::kDims) Append(field, name, constant.sides);
+    if (field.number == onnx::kDims) onnx::Append(field, name, constant.sides);
     if (field.number == onnx::kRaw && field.IsBytes()) raw = field.bytes;
   });
   for (const std::int64_t side : constant.sides) elements *= side;
   if (elements > kMost) return constant;
   ForEachField(tensor, name, [&](const ProtobufField& field) {
     if (field.number == onnx::kFloats) AppendRaw<float>(field.bytes, constant.floats);
-    if (field.number == onnx::kInt64s || field.number == onnx::kInt32s) Append(field, name, constant.whole);
+    if (field.number == onnx::kInt64s || field.number == onnx::kInt32s)
+      onnx::Append(field, name, constant.whole);
   });
   if (constant.type == onnx::kFloat) AppendRaw<float>(raw, constant.floats);
   if (constant.type == onnx::kInt64) AppendRaw<std::int64_t>(raw, constant.whole);

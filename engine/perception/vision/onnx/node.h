@@ -9,7 +9,11 @@
 
 namespace ed3r::perception {
 
+// What an attribute holds: one of these, or something else.
+enum class OnnxHeld { kNothing, kFloat, kInt, kInts, kText, kTensor, kElse };
+
 struct OnnxAttribute {
+  OnnxHeld held = OnnxHeld::kNothing;
   double number = 0.0;  // of one number
   std::vector<std::int64_t> numbers;
   std::string text;
@@ -45,7 +49,6 @@ OnnxConstant ConstantOf(std::string_view tensor, const std::string& name);
 
 // What the steps stand among.
 struct OnnxSurroundings {
-  std::string producer;  // the model's producer_name
   std::int64_t opset = 1;
   std::map<std::string, OnnxConstant> constants;
 };

@@ -2,21 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "engine/core/files/protobuf.h"
 #include "engine/perception/vision/onnx/fields.h"
 
 namespace ed3r::perception {
 namespace {
-
-std::string TensorNameOf(std::string_view bytes, const std::string& name) {
-  std::string found;
-  ForEachField(bytes, name, [&](const ProtobufField& field) {
-    if (field.IsBytes() && field.number == onnx::kTensorName) found = field.bytes;
-  });
-  return found;
-}
 
 bool HoldsGraphs(std::string_view attribute, const std::string& name) {
   bool found = false;
@@ -63,13 +53,6 @@ void ReadTensorType(std::string_view bytes, const std::string& name, OnnxValue& 
 
 }  // namespace
 
-std::string onnx::TypeName(std::uint64_t type) {
-  constexpr std::array<const char*, 17> kNames = {
-      "none",  "float",   "uint8",  "int8",   "uint16", "int16",     "int32",      "int64",   "text",
-      "truth", "float16", "double", "uint32", "uint64", "complex64", "complex128", "bfloat16"};
-  return type < kNames.size() ? kNames[type] : fmt::format("number {}", type);
-}
-
 std::string OnnxValue::ShapeText() const {
   if (!has_shape) return "?";
   std::vector<std::string> sides;
@@ -103,7 +86,7 @@ OnnxOutline OutlineOf(std::string_view bytes, const std::string& name) {
     ForEachField(model.bytes, name, [&](const ProtobufField& field) {
       if (!field.IsBytes()) return;
       if (field.number == onnx::kNode) outline.steps.push_back(StepOf(field.bytes, name));
-      if (field.number == onnx::kInitializer) outline.weights.insert(TensorNameOf(field.bytes, name));
+      if (field.number == onnx::kInitializer) outline.weights.insert(onnx::TensorName(field.bytes, name));
       if (field.number == onnx::kInput) outline.inputs.push_back(ParseOnnxValue(field.bytes, name));
       if (field.number == onnx::kOutput) outline.outputs.push_back(ParseOnnxValue(field.bytes, name));
     });

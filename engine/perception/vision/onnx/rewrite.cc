@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -51,19 +53,17 @@ class Rewriter {
 
   std::string Model(std::string_view bytes) {
     ForEachField(bytes, name_, [&](const ProtobufField& field) {
-      if (field.number == onnx::kProducer && field.IsBytes()) around_.producer = field.bytes;
       if (field.number == onnx::kOpset && field.IsBytes()) ReadOpset(field.bytes);
       if (field.number == onnx::kGraph && field.IsBytes()) FindConstants(field.bytes);
     });
     ProtobufWriter out;
     ForEachField(bytes, name_, [&](const ProtobufField& field) {
-      if (field.number != onnx::kGraph || !field.IsBytes()) {
+      if (field.number == onnx::kGraph && field.IsBytes())
+        out.Bytes(onnx::kGraph, Graph(field.bytes));
+      else if (field.number != onnx::kProducer)
         out.Copy(field);
-        return;
-      }
-      out.Bytes(onnx::kGraph, Graph(field.bytes));
     });
-    return out.bytes();
+    return out.Bytes(onnx::kProducer, counts_padding_.value_or(false) ? "pytorch" : "").bytes();
   }
 
  private:
@@ -104,7 +104,7 @@ class Rewriter {
   void FindConstants(std::string_view graph) {
     ForEachField(graph, name_, [&](const ProtobufField& field) {
       if (field.number == onnx::kInitializer && field.IsBytes())
-        around_.constants[TensorName(field.bytes)] = ConstantOf(Tensor(field.bytes), name_);
+        AddConstant(onnx::TensorName(field.bytes, name_), field.bytes);
       if (field.number != onnx::kNode || !field.IsBytes()) return;
       std::string output;
       std::string_view attribute, op;
@@ -115,10 +115,14 @@ class Rewriter {
       });
       if (op != "Constant") return;
       ForEachField(attribute, name_, [&](const ProtobufField& part) {
-        if (part.number == onnx::kAttributeTensor && part.IsBytes())
-          around_.constants[output] = ConstantOf(Tensor(part.bytes), name_);
+        if (part.number == onnx::kAttributeTensor && part.IsBytes()) AddConstant(output, part.bytes);
       });
     });
+  }
+
+  void AddConstant(const std::string& value, std::string_view tensor) {
+    around_.constants[value] = ConstantOf(Tensor(tensor), name_);
+    tensors_[value] = tensor;
   }
 
   std::string Graph(std::string_view bytes) {
@@ -129,13 +133,11 @@ class Rewriter {
       if (!field.IsBytes()) return;
       switch (field.number) {
         case onnx::kNode:
-          if (!keep_.at(step++)) break;
-          shapes.Add(NodeOf(field.bytes, name_));
-          for (const std::string& node : Mended(Node(field.bytes), around_, name_))
-            out.Bytes(onnx::kNode, node);
+          if (keep_.at(step++)) Step(field.bytes, shapes, out);
           break;
         case onnx::kInitializer:
-          if (needed_.contains(TensorName(field.bytes))) out.Bytes(onnx::kInitializer, Tensor(field.bytes));
+          if (needed_.contains(onnx::TensorName(field.bytes, name_)))
+            out.Bytes(onnx::kInitializer, Tensor(field.bytes));
           break;
         case onnx::kInput:
           Input(ParseOnnxValue(field.bytes, name_), out);
@@ -151,6 +153,65 @@ class Rewriter {
       }
     });
     return out.bytes();
+  }
+
+  void Step(std::string_view bytes, OnnxShapes& shapes, ProtobufWriter& out) {
+    OnnxNode node = NodeOf(bytes, name_);
+    for (std::string& input : node.inputs) input = Through(input);
+    if (node.op == "Identity" && node.inputs.size() == 1 && node.outputs.size() == 1 &&
+        around_.constants.contains(node.inputs[0])) {
+      same_[node.outputs[0]] = node.inputs[0];
+      return;
+    }
+    shapes.Add(node);
+    if (node.op == "AveragePool") FollowPadding(node);
+    if (node.op == "Div" && around_.constants.contains(node.inputs[1])) {
+      Quotient(bytes, node, out);
+      return;
+    }
+    const std::size_t rank = node.inputs.empty() ? 0 : shapes.Of(node.inputs[0]).size();
+    for (const std::string& mended : Mended(Node(bytes), rank, around_, name_))
+      out.Bytes(onnx::kNode, mended);
+  }
+
+  // OpenCV turns the constant that it divides by into its reciprocal, for every other step that takes it, too.
+  void Quotient(std::string_view bytes, const OnnxNode& node, ProtobufWriter& out) {
+    const std::string own = "divisor of " + node.outputs.at(0);
+    ProtobufWriter value, constant, quotient;
+    value.Bytes(onnx::kAttributeName, "value");
+    value.Bytes(onnx::kAttributeTensor, Tensor(tensors_.at(node.inputs[1])));
+    value.Number(onnx::kAttributeType, onnx::kTypeOfTensor);
+    constant.Bytes(onnx::kNodeOutput, own).Bytes(onnx::kNodeName, own).Bytes(onnx::kNodeOp, "Constant");
+    out.Bytes(onnx::kNode, constant.Bytes(onnx::kNodeAttribute, value.bytes()).bytes());
+    int input = 0;
+    ForEachField(Node(bytes), name_, [&](const ProtobufField& field) {
+      if (field.number == onnx::kNodeInput && input++ == 1)
+        quotient.Bytes(onnx::kNodeInput, own);
+      else
+        quotient.Copy(field);
+    });
+    out.Bytes(onnx::kNode, quotient.bytes());
+  }
+
+  // The constant that an Identity gave another name, which OpenCV does not take for one.
+  std::string Through(const std::string& value) const {
+    const auto found = same_.find(value);
+    return found == same_.end() ? value : found->second;
+  }
+
+  // OpenCV lets padding count in all averages of a model from pytorch, and in none of any other.
+  void FollowPadding(const OnnxNode& node) {
+    const std::vector<std::int64_t> pads = node.Numbers("pads");
+    const bool padded = node.Word("auto_pad", "") == "SAME_UPPER" ||
+                        std::any_of(pads.begin(), pads.end(), [](std::int64_t pad) { return pad != 0; });
+    if (!padded) return;
+    const bool counts = node.Number("count_include_pad", 0) != 0;
+    if (counts_padding_.value_or(counts) != counts)
+      Refuse(fmt::format(
+          "operator {} has count_include_pad = {}, and one before it has not; allowed: all with pads "
+          "alike, or a Pad before an AveragePool without pads",
+          node.Text(), counts ? 1 : 0));
+    counts_padding_ = counts;
   }
 
   OnnxSides InputSides() const {
@@ -205,6 +266,8 @@ class Rewriter {
     ForEachField(bytes, name_, [&](const ProtobufField& field) {
       if (field.IsBytes() && field.number == onnx::kNodeAttribute)
         out.Bytes(field.number, Attribute(field.bytes, op == "Cast"));
+      else if (field.IsBytes() && field.number == onnx::kNodeInput)
+        out.Bytes(field.number, Through(std::string(field.bytes)));
       else if (field.number != onnx::kNodeName || !taken)
         out.Copy(field);
     });
@@ -223,14 +286,6 @@ class Rewriter {
         out.Copy(field);
     });
     return out.bytes();
-  }
-
-  std::string TensorName(std::string_view bytes) const {
-    std::string found;
-    ForEachField(bytes, name_, [&](const ProtobufField& field) {
-      if (field.IsBytes() && field.number == onnx::kTensorName) found = field.bytes;
-    });
-    return found;
   }
 
   // Half precision stands in raw bytes, two each, or one by one among the 32-bit integers.
@@ -266,6 +321,9 @@ class Rewriter {
   std::set<std::string> needed_;  // values
   std::set<std::string> node_names_;
   OnnxSurroundings around_;
+  std::map<std::string, std::string_view> tensors_;  // of the constants, as the file has them
+  std::map<std::string, std::string> same_;          // constants by their other names
+  std::optional<bool> counts_padding_;               // in averages, if any has padding
 };
 
 }  // namespace

@@ -26,8 +26,6 @@ inline std::int64_t Count(const OnnxSides& sides) { return Count(sides, 0, sides
 
 inline std::string Text(const OnnxSides& sides) { return fmt::format("[{}]", fmt::join(sides, ", ")); }
 
-constexpr std::int64_t kMostElements = 1 << 28;  // of a tensor: a gigabyte of floats
-
 class ShapeStep {
  public:
   ShapeStep(const OnnxNode& node, const OnnxSurroundings& around,
@@ -35,6 +33,7 @@ class ShapeStep {
             const std::map<std::string, std::vector<std::int64_t>>& whole, const std::string& name)
       : node_(node), around_(around), sides_(sides), whole_(whole), name_(name) {}
 
+  // A letter for each input, as RuleOf takes them. Refuses what no step before gives.
   std::string Kinds() const {
     std::string kinds;
     for (const std::string& input : node_.inputs) {
@@ -56,8 +55,8 @@ class ShapeStep {
   void CheckSize(const OnnxSides& sides) const {
     std::int64_t elements = 1;
     for (const std::int64_t side : sides)
-      if (side < 1 || side > kMostElements || (elements *= side) > kMostElements)
-        Refuse(fmt::format("gives {}", Text(sides)), fmt::format("at most {} elements", kMostElements));
+      if (side < 1 || side > onnx::kMostElements || (elements *= side) > onnx::kMostElements)
+        Refuse(fmt::format("gives {}", Text(sides)), fmt::format("at most {} elements", onnx::kMostElements));
   }
 
  protected:
@@ -83,7 +82,8 @@ class ShapeStep {
 
   // Files may hold any number; beyond the largest tensor all are alike, and their sums and products stay in 64 bits.
   static std::vector<std::int64_t> Bounded(std::vector<std::int64_t> numbers) {
-    for (std::int64_t& number : numbers) number = std::clamp(number, -2 * kMostElements, 2 * kMostElements);
+    for (std::int64_t& number : numbers)
+      number = std::clamp(number, -2 * onnx::kMostElements, 2 * onnx::kMostElements);
     return numbers;
   }
 

@@ -53,15 +53,33 @@ class Whole : public ShapeStep {
 
 std::vector<std::int64_t> WholeNumbers(const ShapeStep& step) { return Whole(step).Made(); }
 
+// Sizes that were made float have quotients that are not whole.
+void OnnxShapes::FollowFloats(const OnnxNode& node) {
+  const bool floats = node.op == "Cast"
+                          ? node.Number("to", 0) == static_cast<double>(onnx::kFloat)
+                          : std::any_of(node.inputs.begin(), node.inputs.end(),
+                                        [&](const auto& input) { return floats_.contains(input); });
+  if (floats && node.op == "Div")
+    throw UserError(fmt::format("{}: operator {} divides sizes that were made float; allowed: int64", name_,
+                                node.Text()));
+  if (floats) floats_.insert(node.outputs.at(0));
+}
+
 void OnnxShapes::Add(const OnnxNode& node) {
   const ShapeStep step(node, around_, sides_, whole_, name_);
   const OnnxRule rule = RuleOf(node, step.Kinds(), around_.opset, name_);
+  if (rule == OnnxRule::kNumbers) FollowFloats(node);
   if (rule == OnnxRule::kShape || rule == OnnxRule::kNumbers) whole_[node.outputs.at(0)] = WholeNumbers(step);
   std::vector<OnnxSides> outputs = ComputedSides(step, rule);
   if (outputs.empty()) outputs = ArrangedSides(step, rule);
   for (const OnnxSides& sides : outputs) step.CheckSize(sides);
   for (std::size_t i = 0; i < outputs.size() && i < node.outputs.size(); ++i)
     sides_[node.outputs[i]] = outputs[i];
+}
+
+OnnxSides OnnxShapes::Of(const std::string& value) const {
+  const auto found = sides_.find(value);
+  return found == sides_.end() ? OnnxSides{} : found->second;
 }
 
 }  // namespace ed3r::perception

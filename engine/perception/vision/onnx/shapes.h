@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,11 +26,17 @@ class OnnxShapes {
   // for shapes with which OpenCV reads them otherwise than the standard.
   void Add(const OnnxNode& node);
 
+  // Of what is computed, else empty.
+  OnnxSides Of(const std::string& value) const;
+
  private:
+  void FollowFloats(const OnnxNode& node);
+
   const OnnxSurroundings& around_;
   const std::string& name_;
   std::map<std::string, OnnxSides> sides_;                  // of what is computed
   std::map<std::string, std::vector<std::int64_t>> whole_;  // what is made of shapes
+  std::set<std::string> floats_;                            // of those
 };
 
 }  // namespace ed3r::perception
