@@ -324,6 +324,10 @@ TEST_F(Forms, WhatExportersWriteIsRead) {
     return sum / kWidth;
   });
 
+  model_.Integers("from", {-100}).Integers("to", {5}).Integers("a", {3});
+  model_.Step("Slice", {"x", "from", "to", "a"}, {"z"});
+  Expect("Slice", 3, kHeight, 5, whole);
+
   model_.Weights("one", {3}, {1, 1, 1}).Weights("nought", {3}, {0, 0, 0});
   model_.Step("InstanceNormalization", {"x", "one", "nought"}, {"z"});
   Expect("InstanceNormalization", 3, kHeight, kWidth, [&](int c, int y, int x) {

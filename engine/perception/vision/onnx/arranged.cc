@@ -175,7 +175,7 @@ class Arranged : public ShapeStep {
                              std::clamp<std::int64_t>(starts[i] < 0 ? starts[i] + side : starts[i], 0, side),
                          end = std::clamp<std::int64_t>(ends[i] < 0 ? ends[i] + side : ends[i], 0, side);
       out[axis] = (end - begin + step - 1) / step;
-      if (end <= begin || starts[i] < -side)
+      if (end <= begin)
         Refuse(fmt::format("takes {} .. {} of side {} of {}", starts[i], ends[i], axis, Text(X())),
                "what is there");
     }
