@@ -195,7 +195,8 @@ TEST_F(Operators, AveragesCountTheirPaddingAsTheModelSays) {
   model_.Step("AveragePool", {"frame"}, {"p"}, window).Step("AveragePool", {"p"}, {"q"}, counting);
   model_.Step("Flatten", {"q"}, {"y"}, {{"axis", std::int64_t{1}}});
   ExpectRefusal(
-      "operator AveragePool (node 'the AveragePool') has count_include_pad = 1, and one before it has not");
+      "operator AveragePool (node 'the AveragePool') has count_include_pad = 1, and one before it 0; "
+      "allowed: alike");
 }
 
 TEST_F(Operators, WindowsThatDoNotFitAreCutOrCounted) {

@@ -158,7 +158,8 @@ class Rewriter {
   void Step(std::string_view bytes, OnnxShapes& shapes, ProtobufWriter& out) {
     OnnxNode node = NodeOf(bytes, name_);
     for (std::string& input : node.inputs) input = Through(input);
-    if (node.op == "Identity" && node.inputs.size() == 1 && node.outputs.size() == 1 &&
+    const bool own = node.domain.empty() || node.domain == "ai.onnx";
+    if (own && node.op == "Identity" && node.inputs.size() == 1 && node.outputs.size() == 1 &&
         around_.constants.contains(node.inputs[0])) {
       same_[node.outputs[0]] = node.inputs[0];
       return;
@@ -208,9 +209,9 @@ class Rewriter {
     const bool counts = node.Number("count_include_pad", 0) != 0;
     if (counts_padding_.value_or(counts) != counts)
       Refuse(fmt::format(
-          "operator {} has count_include_pad = {}, and one before it has not; allowed: all with pads "
-          "alike, or a Pad before an AveragePool without pads",
-          node.Text(), counts ? 1 : 0));
+          "operator {} has count_include_pad = {}, and one before it {}; allowed: alike in all with "
+          "pads, or a Pad before an AveragePool without pads",
+          node.Text(), counts ? 1 : 0, counts ? 0 : 1));
     counts_padding_ = counts;
   }
 
