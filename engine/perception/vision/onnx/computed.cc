@@ -13,9 +13,7 @@ class Computed : public ShapeStep {
   std::vector<OnnxSides> Sides(OnnxRule rule) const {
     switch (rule) {
       case OnnxRule::kConv:
-        return {Window(rule)};
       case OnnxRule::kConvTranspose:
-        return {Window(rule)};
       case OnnxRule::kPool:
         return {Window(rule)};
       case OnnxRule::kOfChannels:
@@ -29,7 +27,6 @@ class Computed : public ShapeStep {
       case OnnxRule::kSoftmax:
         return {Softmax()};
       case OnnxRule::kGemm:
-        return {Product(rule)};
       case OnnxRule::kMatMul:
         return {Product(rule)};
       case OnnxRule::kSame:
