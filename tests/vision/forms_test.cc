@@ -255,6 +255,11 @@ TEST_F(Forms, ASideOfOneIsTheMiddleOrRefused) {
   Expect("half_pixel", 3, 1, kWidth, [&](int c, int, int x) { return In(c, kHeight / 2, x); });
   resize("align_corners");
   Expect("align_corners", 3, 1, kWidth, [&](int c, int, int x) { return In(c, 0, x); });
+  for (const std::string maker : {"pytorch", "tool"}) {
+    model_.Producer(maker).Integers("s", {1, 3, 1, kWidth});
+    model_.Step("Resize", {"x", "", "", "s"}, {"z"}, {{"mode", std::string("linear")}});
+    Expect(maker, 3, 1, kWidth, [&](int c, int, int x) { return In(c, kHeight / 2, x); });
+  }
   resize("pytorch_half_pixel");
   Refuses(
       "makes 1 of side 2 of [1, 3, 9, 12]; allowed: scales that give whole heights and widths, with nearest");

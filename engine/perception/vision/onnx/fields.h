@@ -72,7 +72,7 @@ enum ValueField : std::uint32_t {
   kDimName = 2
 };
 
-inline constexpr std::uint64_t kTypeOfFloat = 1, kTypeOfInt = 2, kTypeOfTensor = 4,
+inline constexpr std::uint64_t kTypeOfFloat = 1, kTypeOfInt = 2, kTypeOfText = 3, kTypeOfTensor = 4,
                                kTypeOfInts = 7;  // of attributes
 inline constexpr std::uint64_t kFloat = 1, kInt32 = 6, kInt64 = 7, kFloat16 = 10, kDouble = 11;
 inline constexpr std::uint64_t kLiesOutside = 1;  // of kLocation

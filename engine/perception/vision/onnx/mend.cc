@@ -41,6 +41,9 @@ class Mender {
     if (step_.op == "Split" && step_.inputs.size() > 1) return WithList("split");
     if (step_.op.starts_with("Reduce") && step_.inputs.size() > 1) return WithList("axes");
     if (step_.op == "Squeeze") return Squeeze();
+    if (step_.op == "Resize" && step_.Word("mode", "") == "linear" &&
+        !step_.Has("coordinate_transformation_mode"))
+      return std::string(node_) + HalfPixel();
     if (step_.op == "InstanceNormalization" && !step_.Has("epsilon"))
       return std::string(node_) + NumberAttribute("epsilon", 1e-5F);
     if (step_.op == "LeakyRelu" && !step_.Has("alpha"))
@@ -109,6 +112,13 @@ class Mender {
     if (step_.inputs[1].empty()) return WithFirstInput();
     const std::vector<std::int64_t>& list = around_.constants.at(step_.inputs[1]).whole;
     return list.empty() ? WithFirstInput() : WithFirstInput() + ListAttribute(attribute, list);
+  }
+
+  static std::string HalfPixel() {
+    ProtobufWriter attribute, field;
+    attribute.Bytes(onnx::kAttributeName, "coordinate_transformation_mode");
+    attribute.Bytes(onnx::kAttributeText, "half_pixel").Number(onnx::kAttributeType, onnx::kTypeOfText);
+    return field.Bytes(onnx::kNodeAttribute, attribute.bytes()).bytes();
   }
 
   std::string Squeeze() const {

@@ -2,6 +2,7 @@
 //
 //   Gemm          unless transB is 1 the weights are taken the wrong way round: an error for most, wrong numbers for square
 //                 ones
+//   Resize        linear ones without coordinates are read by who made the file; here they get those of the standard
 //   InstanceNormalization
 //                 without epsilon it is refused; here it gets its epsilon
 //   LeakyRelu     without alpha the slope is 0, not 0.01
