@@ -17,9 +17,9 @@
 #include "engine/core/check.h"
 #include "engine/core/files/file.h"
 #include "engine/core/message.h"
-#include "engine/world/files/geo_keys.h"
 #include "engine/world/files/quiet_gdal.h"
 #include "engine/world/files/raster_neighbours.h"
+#include "engine/world/files/tiff_directory.h"
 #include "engine/world/files/utm_zone.h"
 
 namespace ed3r::world {
@@ -75,6 +75,7 @@ class Reference {
     dataset.GetGeoTransform(transform_.data());
     if (const OGRSpatialReference* stored = dataset.GetSpatialRef(); stored != nullptr && !stored->IsEmpty())
       system_ = *stored;
+    if (const std::string why = WhyBlocksAreElsewhere(file); !why.empty()) Fail(why);
     keys_ = ReadGeoKeys(file);
     // A key is compared on its own: GDAL may not have understood it.
     if (own != nullptr && UnitOfKey(keys_, kProjectedUnitsKey).empty())

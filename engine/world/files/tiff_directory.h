@@ -1,4 +1,4 @@
-// The numbers among a GeoTIFF's keys, from the file itself: GDAL passes over the units of a coordinate system that it
+// What the first directory of a TIFF says, from the file itself. The numbers among a GeoTIFF's keys: GDAL passes over the units of a coordinate system that it
 // does not know, and over that of heights beside a vertical system that has one of its own.
 #pragma once
 
@@ -10,6 +10,10 @@ namespace ed3r::world {
 
 // By their numbers in the GeoTIFF standard; those of the first image. Empty: no TIFF, or one without keys.
 std::map<int, int> ReadGeoKeys(const std::filesystem::path& file);
+
+// Why not all blocks of heights can be where they are said to be: over each other, or over the directory. One bit of their places
+// would give other heights, of which GDAL says nothing. "" where nothing speaks against it.
+std::string WhyBlocksAreElsewhere(const std::filesystem::path& file);
 
 inline constexpr int kProjectedUnitsKey = 3076;
 inline constexpr int kVerticalUnitsKey = 4099;
