@@ -51,9 +51,10 @@ class Merged {
     return FindPlan(reader_.StoredRecipe(), reader_.Layout(), shard);
   }
 
-  // Of a shard whose plan counts.
+  // Of a shard whose plan counts. A complete run lacks nothing, whatever a damaged shard's keys say.
   bool Lacks(ResultReader& shard) const {
-    return !Includes(stored_, Here(shard, shard.Stored())) || !Includes(known_, Here(shard, Failed(shard)));
+    return !IsComplete() &&
+           (!Includes(stored_, Here(shard, shard.Stored())) || !Includes(known_, Here(shard, Failed(shard))));
   }
 
  private:
