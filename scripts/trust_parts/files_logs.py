@@ -213,7 +213,9 @@ def raw(one, writer, name):
     touched, data, begun = 0, None, 0
     one.otherwise = (what,) if what == "as it is" else ()
     if what == "a message lost":
-        what, touched = f"{what}: {messages.pop(at)[1]}", 1
+        lost = messages.pop(at)[1]
+        # What is said first of a state is a change: the rows before it are on the ground.
+        what, touched = f"{what}: {lost}", 10 if lost in ("landed", "armed") else 1
     elif what == "a message twice":
         messages.insert(at, messages[at])
         what = f"{what}: {messages[at][1]}"
