@@ -118,6 +118,8 @@ def changed_model(rng, model):
         return what, rng.choice([b"", b"\x89HDF\r\n\x1a\n" + bytes(64), b"PK\3\4" + data, b"TFL3" + data, b"<html></html>"]), "it is no model"
     numbers = [(data.index(packed), len(packed)) for values in ([value for row in model.weights for value in row], model.biases)
                for packed in [struct.pack(f"<{len(values)}f", *values)]]
+    declared = value("frame", model.shape)  # another size there is another size
+    numbers.append((data.index(declared), len(declared)))
     at = rng.choice([i for i in range(len(data)) if not any(begin <= i < begin + size for begin, size in numbers)])
     return f"{what}: byte {at}", data[:at] + bytes([data[at] ^ 1 << rng.randrange(8)]) + data[at + 1:], ""
 
