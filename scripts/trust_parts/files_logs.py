@@ -82,7 +82,7 @@ def plain_log(data, read, skip=False):
         found.append(scaled)
     if bad > 0.1 * len(rows):
         return "more than a tenth of its rows are bad"
-    if any(volt < 0 or volt > 1000 or amp < 0 or speed < 0 for _, volt, amp, speed, *_ in found):
+    if any(volt < 0 or volt > 1000 or speed < 0 for _, volt, _, speed, *_ in found):
         return "voltage, current or speed cannot be"
     return [plain_row(*row[:5]) for row in found] if found else "it has no rows"
 
