@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "engine/core/check.h"
+#include "engine/core/files/descriptor.h"
 #include "engine/store/sqlite.h"
 
 namespace ed3r::store {
@@ -30,18 +31,13 @@ class BinaryFile {
  public:
   explicit BinaryFile(const std::string& name)
       : name_(name), descriptor_(open(name.c_str(), O_RDONLY | O_CLOEXEC)) {
-    if (descriptor_ < 0) CheckError();
+    if (!there()) CheckError();
   }
-  ~BinaryFile() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  BinaryFile(const BinaryFile&) = delete;
-  BinaryFile& operator=(const BinaryFile&) = delete;
 
-  bool there() const { return descriptor_ >= 0; }
-  std::int64_t Size() const { return lseek(descriptor_, 0, SEEK_END); }
+  bool there() const { return descriptor_.number() >= 0; }
+  std::int64_t Size() const { return lseek(descriptor_.number(), 0, SEEK_END); }
   bool Read(std::int64_t at, void* bytes, std::size_t size) const {
-    const ssize_t got = pread(descriptor_, bytes, size, at);
+    const ssize_t got = pread(descriptor_.number(), bytes, size, at);
     if (got < 0) CheckError();
     return got == static_cast<ssize_t>(size);
   }
@@ -61,7 +57,7 @@ class BinaryFile {
   }
 
   std::string name_;
-  int descriptor_;
+  Descriptor descriptor_;
 };
 
 std::optional<FileState> StateAt(const BinaryFile& file, std::int64_t page) {

@@ -12,8 +12,7 @@ namespace ed3r {
 inline constexpr std::string_view kTemporaryEnd = ".tmp", kTemporaryFilm = ".mp4", kTemporaryFolder = ".dir";
 
 // A new file in `folder`, of a name that nobody can guess: its descriptor, -1 with errno where there is none. It is locked
-// while the descriptor is open, so that RemoveLeftovers can tell it from one whose process is gone, and known
-// here.
+// while the descriptor is open, so that RemoveLeftovers can tell it from one whose process is gone.
 int MakeTemporaryFile(const std::filesystem::path& folder, std::string_view end, std::filesystem::path& made);
 
 // Removes the temporary files and folders that killed processes left in this folder: those of such names, that
