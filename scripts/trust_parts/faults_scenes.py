@@ -25,7 +25,9 @@ sweep: {list: [{name: rbs, strategy: rbs}, {name: level, strategy: look-level}]}
 """
 HERE = pathlib.Path(__file__).resolve().parent
 LEARN = ("tiny.yaml", "--cache", "cache", "--quiet")
+PAGE = ("--html", "--frames", "1")
 QUICK = ("--no-figures", "--no-missions")
+NO_VIEWER, NO_CODECS = "'scripts/setup --web' makes it", "--html and --frames need none"
 NOT_MET = "not met"  # tries whose moment the command did not come to: they are judged, and are none
 # What shows a run's world: the page, what its map is drawn from, the map, missions to be watched.
 WORLDS_FILES = re.compile(r"[^/]+/(index\.html|figures/(data\.json|map\.(svg|png))|missions/[^/]+\.html)")
@@ -42,6 +44,7 @@ class Scene:
     together: str = ""            # a folder whose files are of one generation
     mark: str = ""                # ... unless this one of them is missing: then it is visibly incomplete
     refuses: bool = False         # undisturbed, it ends with another status than 0
+    optional: str = ""            # words that refuse it where a library that not everybody installs is missing
 
 
 def scenes():
@@ -70,8 +73,10 @@ def scenes():
                          "tiny_world.yaml"), ("tiny_world.yaml",), "frames", "manifest.json"),
         Scene("detect", ("detect", "pictures", "--table", "table.csv"), ("pictures",)),
         Scene("replay", ("replay", "run", "ed3r-75/3", "--cache", "cache", "--out", "flown"), (*one, "flown"), "flown"),
-        Scene("replay --html", ("replay", "run", "ed3r-75/3", "--cache", "cache", "--html", "--frames", "1", "--out", "flown"), (*one, "flown"), "flown"),
-        Scene("replay --video", ("replay", "run", "rbs/3", "--cache", "cache", "--video", "film.mp4", "--out", "flown"), one),
+        Scene("replay --html", ("replay", "run", "ed3r-75/3", "--cache", "cache", *PAGE, "--out", "flown"), (*one, "flown"), "flown",
+              optional=NO_VIEWER),
+        Scene("replay --video", ("replay", "run", "rbs/3", "--cache", "cache", "--video", "film.mp4", "--out", "flown"), one,
+              optional=NO_CODECS),
         Scene("explain", ("explain", "run", "ed3r-75/3", "--step", "1", "--cache", "cache"), one),
         Scene("digest", ("digest", "run"), ("run",)),
         Scene("digest (damaged)", ("digest", "damaged"), ("damaged",), refuses=True),
@@ -222,15 +227,17 @@ def make_template(stage):
         write_log(at / log, stage.trial.random)
     runs = [(*LEARN, "--out", "run"), (*LEARN, "--out", "half", "--missions", "online=6"), ("flat.yaml", "--out", "failed", "--quiet"),
             ("flat.yaml", "--shard", "1/2", "--out", "first", "--quiet"), ("flat.yaml", "--shard", "2/2", "--out", "second", "--quiet")]
-    others = [("report", "half", *QUICK, "--out", "page"), ("export", "half", "--csv", "--numpy", "--out", "exported"),
-              ("compare", "half", "run", "--out", "compared"), ("fit", "other.csv", "--out", "fitted", "--no-figures"),
-              ("replay", "half", "ed3r-75/2", "--cache", "cache", "--html", "--frames", "1", "--out", "flown"),
-              ("slurm", "tiny.yaml", "--out", "cluster", "--cache", "other", "--shards", "3"),
-              ("frames", "--out", "pictures", "--views", "2", "--frames", "1", "--pictures", "0", "--size", "16x12", "--world", "tiny_world.yaml")]
     for arguments in runs:
         must(stage, at, ("run", *arguments))
     # In a place of its own: manifests name the sweep by where it was flown from, and differently there.
     workshop = stage.place(Scene("", (), ("run", "half", "cache", "other.csv", "tiny.yaml", "tiny_world.yaml")))
+    watched = ("replay", "half", "ed3r-75/2", "--cache", "cache", "--out", "flown")
+    viewer = NO_VIEWER not in stage.say(workshop, (*watched, *PAGE)).err  # without it what is written over has no page
+    others = [("report", "half", *QUICK, "--out", "page"), ("export", "half", "--csv", "--numpy", "--out", "exported"),
+              ("compare", "half", "run", "--out", "compared"), ("fit", "other.csv", "--out", "fitted", "--no-figures"),
+              (*watched, *(PAGE if viewer else ())),
+              ("slurm", "tiny.yaml", "--out", "cluster", "--cache", "other", "--shards", "3"),
+              ("frames", "--out", "pictures", "--views", "2", "--frames", "1", "--pictures", "0", "--size", "16x12", "--world", "tiny_world.yaml")]
     for arguments in others:
         must(stage, workshop, arguments)
     for made in ("page", "exported", "compared", "fitted", "flown", "cluster", "pictures"):

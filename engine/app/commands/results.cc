@@ -51,9 +51,13 @@ struct Check {
 };
 
 Check CheckOf(store::ResultReader& reader) {
-  if (!reader.Tables().checked()) return {.possible = false};
-  if (!reader.IsQuicklyCompared()) return {};
-  return {true, true, reader.FindDamage(), DamageOfInputs(reader, reader.dir())};
+  Check check;
+  check.possible = reader.Tables().checked();
+  check.done = check.possible && reader.IsQuicklyCompared();
+  if (!check.done) return check;
+  check.damage = reader.FindDamage();
+  check.inputs = DamageOfInputs(reader, reader.dir());
+  return check;
 }
 
 void PrintStatusJson(store::ResultReader& reader, const Check& check) {
