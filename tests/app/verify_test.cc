@@ -164,6 +164,21 @@ TEST_F(VerifyTest, ShardsCountForEveryReader) {
   EXPECT_EQ(json::parse(Ed3r("verify --json " + dir).out)["damaged"][0]["store"], shard.string());
 }
 
+// What a complete run tells is in it: a shard beside it that says to hold more is damaged, and nobody needs it.
+TEST_F(VerifyTest, ADamagedShardBesideACompleteRunIsNamedByVerifyAlone) {
+  const fs::path shard = Run() / "shards/online/00001";
+  ASSERT_EQ(Ed3r(FlyRbs(shard, "--shard 1/2")).status, 0);
+  Sql(shard, "UPDATE missions SET mission = mission + 40");
+  const std::string dir = Run().string();
+  const CommandResult digested = Ed3r("digest " + dir), verified = Ed3r("verify " + dir);
+  EXPECT_EQ(digested.status, 0) << digested.err;
+  EXPECT_EQ(digested.out, digest_);
+  EXPECT_EQ(json::parse(Ed3r("status --json " + dir).out)["arms"][0]["done"], 4);
+  EXPECT_EQ(Ed3r("report --no-figures --no-missions " + dir).status, 0);
+  EXPECT_EQ(verified.status, 1);
+  EXPECT_TRUE(Contains(verified.out, shard.string() + ": ")) << verified.out;
+}
+
 TEST_F(VerifyTest, StatusNamesAMissionThatIsNotPlanned) {
   Sql(Run(), "UPDATE missions SET mission = 9 WHERE mission = 3");
   const CommandResult status = Ed3r("status " + Run().string());
