@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "engine/store/sqlite.h"
 #include "tests/store/store_fixture.h"
 
 namespace ed3r::store {
@@ -176,6 +177,25 @@ TEST(JournalsTest, ALogIsLookedForBesideWhatALinkLeadsTo) {
   fs::remove(ResultsIn(temp / "moved"));
   fs::rename(ResultsIn(temp / "elsewhere"), ResultsIn(temp / "moved"));
   EXPECT_EQ(ResultReader(temp / "moved").CountMissions(), 1);
+}
+
+// The system's memory opens like a file, and its first bytes fail as those of a broken disk do. Taken for no journal, it would
+// be left for SQLite to find later.
+TEST(JournalsTest, AJournalThatCannotBeReadIsNotTakenForNone) {
+  const TempDir temp;
+  fs::create_directories(temp / "run");
+  const std::string file = ResultsIn(temp / "run");
+  for (const char* suffix : {"-wal", "-journal"}) {
+    fs::create_symlink("/proc/self/mem", file + suffix);
+    try {
+      CheckNoJournals(file, "its owner");
+      ADD_FAILURE() << suffix << " was taken for none";
+    } catch (const StoreError& error) {
+      EXPECT_EQ(std::string(error.what()), file + suffix + ": cannot be read: Input/output error");
+    }
+    fs::remove(file + suffix);
+  }
+  CheckNoJournals(file, "its owner");
 }
 
 TEST(JournalsTest, EachSessionHasItsMark) {
