@@ -14,12 +14,12 @@
 namespace ed3r::app {
 namespace {
 
-// This very build: what it prints may differ from what another one does.
-std::string ThisProgram() {
+// This very build, with this cache: what it prints may differ from what another one does.
+std::string ThisProgram(const std::string& cache) {
   struct stat found = {};
   if (stat("/proc/self/exe", &found) != 0) return "";
-  return fmt::format("{} {} {}.{:09}", ThisCode().source_hash, found.st_size, found.st_mtim.tv_sec,
-                     found.st_mtim.tv_nsec);
+  return fmt::format("{} {} {}.{:09} {}", ThisCode().source_hash, found.st_size, found.st_mtim.tv_sec,
+                     found.st_mtim.tv_nsec, cache);
 }
 
 // By what the files contain: worlds and detectors need not be loaded for that.
@@ -33,9 +33,10 @@ bool SameRecipe(const sweep::SweepPlan& plan, store::ResultReader& reader) {
 
 }  // namespace
 
-bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, bool quiet) {
+bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const std::string& cache,
+                     bool quiet) {
   try {
-    const std::string program = ThisProgram();
+    const std::string program = ThisProgram(cache);
     const auto finished = program.empty() ? std::nullopt : store::RecallFinished(dir, program);
     if (!finished || (!quiet && finished->table.empty())) return false;
     store::ResultReader reader(dir);
@@ -44,6 +45,7 @@ bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, bool 
     const bool compared = reader.IsQuicklyCompared();
     if (compared && !reader.FindDamage().empty()) return false;
     reader.Networks();  // compared, too
+    reader.CheckViews();
     if (!quiet)
       fmt::print("{}\n{}: {} stored ({} before)\n{}", finished->table, dir,
                  Counted(finished->missions, "mission"), finished->missions, finished->networks);
@@ -59,9 +61,10 @@ bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, bool 
   }
 }
 
-void RememberFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const store::FileMoment& told,
-                         std::int64_t missions, const std::string& table, const std::string& networks) {
-  const std::string program = ThisProgram();
+void RememberFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const std::string& cache,
+                         const store::FileMoment& told, std::int64_t missions, const std::string& table,
+                         const std::string& networks) {
+  const std::string program = ThisProgram(cache);
   if (program.empty()) return;
   try {
     store::RememberFinished(dir, told, plan.CanonicalText(), {program, missions, table, networks});

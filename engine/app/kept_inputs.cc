@@ -5,8 +5,9 @@
 
 namespace ed3r::app {
 
-std::string DamageOfInputs(store::ResultReader& reader, const std::string& dir) {
+std::string DamageBesideMissions(store::ResultReader& reader, const std::string& dir) {
   try {
+    reader.CheckViews();
     reader.Files();
     schedule::NetworkShelf::From(reader.Networks(), dir);
   } catch (const UserError& error) {

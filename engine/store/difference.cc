@@ -117,6 +117,15 @@ void DiffArm(ResultReader& here, ResultReader& there, std::pair<int, int> at_her
   for (; other != others.end(); ++other) NoteLonely(name(other->first), false, difference);
 }
 
+// Missions of arms that the other run's plan has not.
+void NoteLonelyArms(ResultReader& run, const RunLayout& other, bool here, RunDifference& difference) {
+  for (const sweep::RunId& id : run.Stored()) {
+    const RunLayout::Stage& stage = run.Layout().stages[static_cast<std::size_t>(id.stage)];
+    if (!FindArm(other, stage.name, stage.arms[static_cast<std::size_t>(id.arm)].name))
+      NoteLonely(run.Layout().Describe(id), here, difference);
+  }
+}
+
 }  // namespace
 
 RunDifference DiffRuns(ResultReader& here, ResultReader& there) {
@@ -126,6 +135,9 @@ RunDifference DiffRuns(ResultReader& here, ResultReader& there) {
     for (std::size_t a = 0; a < stages[s].arms.size(); ++a)
       if (const auto other = FindArm(there.Layout(), stages[s].name, stages[s].arms[a].name))
         DiffArm(here, there, {static_cast<int>(s), static_cast<int>(a)}, *other, difference);
+  // Last, so that a number that differs is told before them.
+  NoteLonelyArms(here, there.Layout(), true, difference);
+  NoteLonelyArms(there, here.Layout(), false, difference);
   return difference;
 }
 

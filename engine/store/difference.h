@@ -25,7 +25,7 @@ struct RunDifference {
 };
 
 // Missions are paired by the names of their stage and arm and their number, so that runs of different plans can be
-// compared where they have arms in common; those of arms that one run lacks are left out.
+// compared where they have arms in common. `first` is of those, unless they are alike and one run has arms more.
 RunDifference DiffRuns(ResultReader& here, ResultReader& there);
 
 }  // namespace ed3r::store

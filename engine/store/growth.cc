@@ -223,7 +223,6 @@ void Grow(Connection& database, const Recipe& recipe, const RunLayout& layout) {
   const std::vector<std::int64_t> numbers = NewNumbers(ReadLayout(database), layout);
   for (const char* table : kTablesByRun) Renumber(database, table, numbers);
   ReplaceRecipe(database, recipe, layout);
-  SealNetworks(database);  // their arms have other numbers now
 }
 
 }  // namespace ed3r::store

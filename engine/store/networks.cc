@@ -20,11 +20,28 @@ std::optional<std::pair<int, int>> ArmOf(const RunLayout& layout, std::int64_t r
   return std::nullopt;
 }
 
+[[noreturn]] void FailNetworkFiles(const Connection& database) {
+  throw UserError(
+      fmt::format("{}: the file is damaged: the names of its networks, or which file is whose, do not "
+                  "match their checksum; 'ed3r run SWEEP' puts them again",
+                  database.file()));
+}
+
+// The seal is over all of them: those that are not put anew must be as they were put.
+void CheckRestMatches(Connection& database, const FlownNetworks& networks) {
+  if (NetworkFilesMatch(database)) return;
+  Statement there(database, "SELECT sha256 FROM networks");
+  while (there.Step())
+    if (!networks.files.contains(there.Text(0))) FailNetworkFiles(database);
+}
+
 }  // namespace
 
 void PutNetworks(Connection& database, const RunLayout& layout, const FlownNetworks& networks) {
+  CheckRestMatches(database, networks);
   // What is put is whole, whatever has become of what is there.
-  Statement put_file(database, "INSERT OR REPLACE INTO networks VALUES (?, ?, ?, ?)");
+  Statement put_file(database,
+                     "INSERT OR REPLACE INTO networks (sha256, name, model, checksum) VALUES (?, ?, ?, ?)");
   for (const auto& [sha256, file] : networks.files) {
     put_file.Bind(0, sha256);
     put_file.Bind(1, file.name);
@@ -32,7 +49,8 @@ void PutNetworks(Connection& database, const RunLayout& layout, const FlownNetwo
     put_file.Bind(3, HashOf(file.model));
     put_file.Run();
   }
-  Statement put_use(database, "INSERT OR IGNORE INTO flown_networks VALUES (?, ?, ?, ?)");
+  Statement put_use(database,
+                    "INSERT OR IGNORE INTO flown_networks (run, seed, agent, sha256) VALUES (?, ?, ?, ?)");
   Statement select(database, "SELECT sha256 FROM flown_networks WHERE run = ? AND seed = ? AND agent = ?");
   for (const NetworkUse& use : networks.uses) {
     const std::int64_t run = layout.RunIndex(use.stage, use.arm), seed = use.seed;
@@ -73,12 +91,7 @@ FlownNetworks ReadNetworks(Connection& database, const RunLayout& layout) {
                                   database.file(), use.agent, use.sha256));
     networks.uses.push_back(use);
   }
-  if (!NetworkFilesMatch(database))
-    throw UserError(
-        fmt::format("{}: the file is damaged: the names of its networks, or which file is whose, do not "
-                    "match their checksum; "
-                    "'ed3r run SWEEP' puts them again",
-                    database.file()));
+  if (!NetworkFilesMatch(database)) FailNetworkFiles(database);
   return networks;
 }
 

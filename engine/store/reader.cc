@@ -13,6 +13,7 @@
 #include "engine/store/schema.h"
 #include "engine/store/sqlite_errors.h"
 #include "engine/store/store_file.h"
+#include "engine/store/views.h"
 
 namespace ed3r::store {
 namespace {
@@ -62,6 +63,11 @@ void ResultReader::CheckPlan() {
 }
 
 std::vector<InputFile> ResultReader::Files() { return ReadFiles(database_); }
+
+void ResultReader::CheckViews() {
+  const Transaction moment(database_, Transaction::Kind::kRead);
+  store::CheckViews(database_);
+}
 
 FlownNetworks ResultReader::Networks() {
   const Transaction moment(database_, Transaction::Kind::kRead);

@@ -79,6 +79,7 @@ class ResultReader {
   const Recipe& StoredRecipe() const { return recipe_; }  // without notes and files: see Sessions()
   std::vector<InputFile> Files();
   FlownNetworks Networks();
+  void CheckViews();  // views.h
 
   // Of the file: 1 has no checksums.
   int Format() const { return format_; }

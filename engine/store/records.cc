@@ -22,7 +22,8 @@ RecordWriter::RecordWriter(Connection& database, const RunLayout& layout)
       insert_step_(database, fmt::format("INSERT INTO timesteps (run, mission, {}) VALUES ({})",
                                          ColumnNames<mission::TimestepRecord>(),
                                          Placeholders<mission::TimestepRecord>(2))),
-      insert_timing_(database, "INSERT OR REPLACE INTO timings VALUES (?, ?, ?, ?)"),
+      insert_timing_(database,
+                     "INSERT OR REPLACE INTO timings (run, mission, session, wall_s) VALUES (?, ?, ?, ?)"),
       insert_failure_(database,
                       "INSERT OR REPLACE INTO failures (run, mission, scenario, seed, kind, message) "
                       "VALUES (?, ?, ?, ?, ?, ?)"),

@@ -13,10 +13,11 @@
 #include "engine/mission/record.h"
 #include "engine/store/checksums.h"
 #include "engine/store/columns.h"
+#include "engine/store/recipe_values.h"
 #include "engine/store/records.h"
 #include "engine/store/seals.h"
 #include "engine/store/shape.h"
-#include "engine/store/words.h"
+#include "engine/store/views.h"
 
 namespace ed3r::store {
 namespace {
@@ -56,24 +57,6 @@ CREATE TABLE timesteps (run INTEGER, mission INTEGER, {}, PRIMARY KEY (run, miss
                      ColumnDefinitions<mission::TimestepRecord>());
 }
 
-template <class Record>
-std::string ViewDefinition(std::string_view table) {
-  std::string columns;
-  for (const Column& column : ColumnsOf<Record>()) {
-    std::string value = fmt::format("{}.{}", table, column.name);
-    if (const auto words = WordsOf(column.name); !words.empty()) {
-      value = fmt::format("CASE {}", value);
-      for (const auto& [code, word] : words) value += fmt::format(" WHEN {} THEN '{}'", code, word);
-      value += " END";
-    }
-    columns += fmt::format(", {} AS {}", value, column.name);
-  }
-  return fmt::format(
-      "CREATE VIEW named_{0} AS SELECT stages.name AS stage, runs.name AS arm, {0}.mission AS mission{1}\n"
-      "  FROM {0} JOIN runs ON runs.run = {0}.run JOIN stages ON stages.stage = runs.stage;\n",
-      table, columns);
-}
-
 // Over everything that says what the missions are missions of: the name of each table, then its rows as texts.
 std::string RecipeChecksum(Connection& database) {
   struct Part {
@@ -96,10 +79,7 @@ std::string RecipeChecksum(Connection& database) {
   return HashOf(bytes);
 }
 
-void SealRecipe(Connection& database) {
-  Statement seal(database, "INSERT OR REPLACE INTO recipe VALUES ('checksum', ?)");
-  seal.Run(RecipeChecksum(database));
-}
+void SealRecipe(Connection& database) { PutRecipeValue(database, "checksum", RecipeChecksum(database)); }
 
 std::string HashOfRows(Connection& database, const char* query) {
   std::string bytes;
@@ -118,13 +98,6 @@ std::string UsesChecksum(Connection& database) {
 // Over the networks by what they compute, their names and the checksums of their files.
 std::string NetworkFilesChecksum(Connection& database) {
   return HashOfRows(database, "SELECT sha256, name, checksum FROM networks ORDER BY sha256");
-}
-
-std::optional<std::string> RecipeValue(Connection& database, std::string_view key) {
-  Statement select(database, "SELECT value FROM recipe WHERE key = ?");
-  select.Bind(0, key);
-  if (!select.Step()) return std::nullopt;
-  return select.Text(0);
 }
 
 [[noreturn]] void FailDamagedRecipe(const Connection& database, std::string_view what) {
@@ -180,33 +153,34 @@ namespace {
 
 // Adds what the file does not know of it yet.
 void AddSession(Connection& database, const Recipe& recipe, const std::vector<std::string>& origins) {
-  Statement put(database, "INSERT OR IGNORE INTO code VALUES (?, ?)");
+  Statement put(database, "INSERT OR IGNORE INTO code (subsystem, identity) VALUES (?, ?)");
   for (const auto& [subsystem, identities] : recipe.code)
     for (const std::string& identity : identities) put.Run(subsystem, identity);
   if (HasSeals(database)) WriteOrigins(database, WithOrigin(origins, recipe));
+  PutViews(database);
   SealRecipe(database);
 }
 
 // Into tables that are empty.
 void PutRecipe(Connection& database, const Recipe& recipe, const RunLayout& layout,
                const std::vector<std::string>& origins) {
-  Statement put(database, "INSERT INTO recipe VALUES (?, ?)");
-  put.Run("sweep", layout.name);
-  put.Run("seed", std::to_string(layout.seed));
-  put.Run("plan", recipe.plan_text);
-  Statement put_input(database, "INSERT INTO inputs VALUES (?, ?)");
+  PutRecipeValue(database, "sweep", layout.name);
+  PutRecipeValue(database, "seed", std::to_string(layout.seed));
+  PutRecipeValue(database, "plan", recipe.plan_text);
+  Statement put_input(database, "INSERT INTO inputs (name, fingerprint) VALUES (?, ?)");
   for (const auto& [name, fingerprint] : recipe.inputs) put_input.Run(name, fingerprint);
-  Statement put_place(database, "INSERT INTO places VALUES (?, ?)");
+  Statement put_place(database, "INSERT INTO places (called, file) VALUES (?, ?)");
   for (const auto& [called, file] : recipe.places) put_place.Run(called, file);
-  Statement put_file(database, "INSERT INTO files VALUES (?, ?, ?)");
+  Statement put_file(database, "INSERT INTO files (name, sha256, content) VALUES (?, ?, ?)");
   for (const InputFile& file : recipe.files) {
     put_file.Bind(0, file.name);
     put_file.Bind(1, file.sha256);
     file.content ? put_file.BindBlob(2, *file.content) : put_file.BindNull(2);
     put_file.Run();
   }
-  Statement put_stage(database, "INSERT INTO stages VALUES (?, ?, ?)");
-  Statement put_run(database, "INSERT INTO runs VALUES (?, ?, ?, ?, ?)");
+  Statement put_stage(database, "INSERT INTO stages (stage, name, missions) VALUES (?, ?, ?)");
+  Statement put_run(database,
+                    "INSERT INTO runs (run, stage, arm, name, first_scenario) VALUES (?, ?, ?, ?, ?)");
   std::int64_t run = 0;
   for (std::size_t s = 0; s < layout.stages.size(); ++s) {
     const RunLayout::Stage& stage = layout.stages[s];
@@ -223,8 +197,6 @@ void PutRecipe(Connection& database, const Recipe& recipe, const RunLayout& layo
 
 void CreateTables(Connection& database, const Recipe& recipe, const RunLayout& layout) {
   database.Execute(TableDefinitions());
-  database.Execute(ViewDefinition<mission::MissionRecord>("missions") +
-                   ViewDefinition<mission::TimestepRecord>("timesteps"));
   CreateMissionsIndex(database);
   PutRecipe(database, recipe, layout, {});
   database.Execute(
@@ -237,11 +209,16 @@ void WriteFirstPage(Connection& database) {
 
 void ReplaceRecipe(Connection& database, const Recipe& recipe, const RunLayout& layout) {
   const std::vector<std::string> origins = ReadOrigins(database);
+  const std::optional<std::string> network_files = RecipeValue(database, kNetworkFilesKey);
   database.Execute(
       "DELETE FROM recipe; DELETE FROM inputs; DELETE FROM places; DELETE FROM files; DELETE FROM stages; "
       "DELETE "
       "FROM runs");
   PutRecipe(database, recipe, layout, origins);
+  PutRecipeValue(database, kUsesKey, UsesChecksum(database));  // their arms have other numbers now
+  // The networks are those of before: where they do not match their checksum, that is still to be seen.
+  if (network_files) PutRecipeValue(database, kNetworkFilesKey, *network_files);
+  SealRecipe(database);
 }
 
 void AddFailureKind(Connection& database) {
@@ -258,9 +235,8 @@ void ContinueRecipe(Connection& database, const Recipe& recipe) {
 }
 
 void SealNetworks(Connection& database) {
-  Statement seal(database, "INSERT OR REPLACE INTO recipe VALUES (?, ?)");
-  seal.Run(kUsesKey, UsesChecksum(database));
-  seal.Run(kNetworkFilesKey, NetworkFilesChecksum(database));
+  PutRecipeValue(database, kUsesKey, UsesChecksum(database));
+  PutRecipeValue(database, kNetworkFilesKey, NetworkFilesChecksum(database));
   SealRecipe(database);
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/core/check.h"
 #include "engine/store/columns.h"
+#include "engine/store/recipe_values.h"
 
 namespace ed3r::store {
 namespace {
@@ -29,18 +30,14 @@ bool HasSeals(Connection& database) {
 }
 
 std::vector<std::string> ReadOrigins(Connection& database) {
-  Statement select(database, "SELECT value FROM recipe WHERE key = ?");
-  select.Bind(0, kKey);
   std::vector<std::string> origins;
-  if (!select.Step()) return origins;
-  std::istringstream words(select.Text(0));
+  std::istringstream words(RecipeValue(database, kKey).value_or(""));
   for (std::string word; words >> word;) origins.push_back(word);
   return origins;
 }
 
 void WriteOrigins(Connection& database, const std::vector<std::string>& origins) {
-  Statement put(database, "INSERT OR REPLACE INTO recipe VALUES (?, ?)");
-  put.Run(kKey, fmt::format("{}", fmt::join(origins, " ")));
+  PutRecipeValue(database, kKey, fmt::format("{}", fmt::join(origins, " ")));
 }
 
 std::vector<std::string> WithOrigin(std::vector<std::string> origins, const Recipe& recipe) {

@@ -126,7 +126,8 @@ class SqliteStore final : public ResultStore {
 
   void PutNote(const std::string& name, const std::string& text) override {
     InGroup([&] {
-      Statement(file_.database(), "INSERT OR REPLACE INTO session_notes VALUES (?, ?, ?)")
+      Statement(file_.database(),
+                "INSERT OR REPLACE INTO session_notes (session, key, value) VALUES (?, ?, ?)")
           .Run(session_, name, text);
     });
   }
@@ -158,9 +159,9 @@ class SqliteStore final : public ResultStore {
     WriteFirstPage(database);
     // Drawn, not counted: sessions of many stores meet in a merge.
     session_ = database.Int("SELECT random() & 0x7fffffffffffffff");
-    Statement begin(database, "INSERT INTO sessions VALUES (?, ?, ?, ?, NULL)");
+    Statement begin(database, "INSERT INTO sessions (session, host, process, begun_utc) VALUES (?, ?, ?, ?)");
     begin.Run(session_, HostName(), static_cast<std::int64_t>(getpid()), UtcNow());
-    Statement note(database, "INSERT INTO session_notes VALUES (?, ?, ?)");
+    Statement note(database, "INSERT INTO session_notes (session, key, value) VALUES (?, ?, ?)");
     for (const auto& [key, value] : recipe.notes) note.Run(session_, key, value);
     transaction.Commit();
   }

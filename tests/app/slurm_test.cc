@@ -342,6 +342,17 @@ TEST_F(PiecesTest, ScriptsOfAnotherSweepAreTold) {
             told + "; give what they were written for, or write the scripts anew with --force\n");
 }
 
+// A copied folder's scripts still write into the one that they were made for, also where its name begins with that one's.
+TEST_F(PiecesTest, ScriptsOfACopiedFolderAreTold) {
+  const std::string sweep = Write(kStages), there = (scratch_ / "a run").string(), here = there + "2";
+  ExpectDone(Ed3r(fmt::format("slurm {} --out '{}' --cache {} --time 1-0", sweep, there, Cache())));
+  fs::copy(there, here, fs::copy_options::recursive);
+  EXPECT_EQ(Ed3r(fmt::format("slurm {} --out '{}' --cache {} --missing", sweep, there, Cache())).err, "");
+  const std::string asked = fmt::format("slurm {} --out '{}' --cache {} --missing", sweep, here, Cache());
+  EXPECT_TRUE(Says(Ed3r(asked).err, fmt::format("its tasks write into '{}', not into '{}'", there, here)));
+  EXPECT_EQ(Ed3r(asked + " --submit").status, 2);
+}
+
 TEST_F(PiecesTest, WhatCannotBeIsRefused) {
   const std::string sweep = Write(kStages);
   const auto refusal = [&](const std::string& command) {

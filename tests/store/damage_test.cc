@@ -279,6 +279,47 @@ TEST(DamageTest, TablesAndViewsOfOnesOwnAreLeftAlone) {
   EXPECT_EQ(ResultReader(temp / "run").CountMissions(), 1);
 }
 
+// No reader of ours asks them, but whoever looks with SQL does.
+TEST(DamageTest, AViewThatTellsAnotherColumnIsNamedAndMadeAnew) {
+  const TempDir temp;
+  const std::string run = temp / "run";
+  WriteStore(run, {{0, 0, 0}});
+  EXPECT_NO_THROW(ResultReader(run).CheckViews());
+  const std::string text =
+      "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = replace(sql, 'timesteps.x_m AS x_m', "
+      "'timesteps.y_m AS x_m') WHERE name = 'named_timesteps'";
+  Sql(ResultsIn(run), text);
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader(run).CheckViews(); }),
+                       "the file is damaged: its view named_timesteps is not as it was made"));
+  WriteStore(run, {{0, 0, 1}});
+  EXPECT_NO_THROW(ResultReader(run).CheckViews());
+  const mission::MissionRecord flown = TestRecord({0, 0, 1});
+  Connection look(ResultsIn(run), Connection::Access::kReadOnly);
+  Statement select(look, "SELECT x_m FROM named_timesteps WHERE mission = 1 ORDER BY k");
+  for (const mission::TimestepRecord& step : flown.steps) {
+    ASSERT_TRUE(select.Step());
+    EXPECT_EQ(select.Real(0), step.x_m);
+  }
+  EXPECT_FALSE(select.Step());
+}
+
+TEST(DamageTest, AColumnThatSomebodyAddedIsLeftAlone) {
+  const TempDir temp;
+  const std::string run = temp / "run";
+  WriteStore(run, {{0, 0, 0}});
+  for (const char* table : {"recipe", "code", "inputs", "places", "files", "stages", "runs", "networks",
+                            "flown_networks", "sessions", "session_notes", "failures", "timings"})
+    Sql(ResultsIn(run), fmt::format("ALTER TABLE {} ADD COLUMN note TEXT", table));
+  const auto store = ResultStore::Open(run, TestRecipe(), TestLayout());
+  store->Put({0, 0, 1}, TestRecord({0, 0, 1}), 0.25);
+  store->PutNetworks({.files = {{"aaaa", {"a network", "bytes"}}}, .uses = {{2, 1, 0, "rc", "aaaa"}}});
+  store->PutNote("name", "text");
+  store->Commit();
+  ResultReader reader(run);
+  EXPECT_EQ(reader.CountMissions(), 2);
+  EXPECT_TRUE(reader.FindDamage().empty());
+}
+
 TEST(DamageTest, ALinkToNowhereIsNotWrittenThrough) {
   const TempDir temp;
   fs::create_directories(temp / "run");

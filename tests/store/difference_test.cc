@@ -92,5 +92,29 @@ TEST_F(DifferenceTest, AShorterMissionAndAMissingOne) {
   EXPECT_EQ(missing.differing, 0);
 }
 
+// Two runs are not identical where one has an arm more.
+TEST_F(DifferenceTest, ArmsThatOneRunLacksAreCounted) {
+  RunLayout fewer = TestLayout();
+  fewer.stages[2].arms.erase(fewer.stages[2].arms.begin());
+  WriteStore(temp_ / "more", {{0, 0, 1}, {2, 0, 3}, {2, 0, 4}, {2, 1, 5}});
+  {
+    const auto store = ResultStore::Open(temp_ / "less", TestRecipe(), fewer);
+    store->Put({0, 0, 1}, TestRecord({0, 0, 1}), 0);
+    mission::MissionRecord other = TestRecord({2, 1, 5});
+    other.total_j += 1;
+    store->Put({2, 0, 5}, other, 0);
+    store->Commit();
+  }
+  ResultReader more(temp_ / "more"), less(temp_ / "less");
+  const RunDifference difference = DiffRuns(more, less), reverse = DiffRuns(less, more);
+  EXPECT_EQ(difference.compared, 2);
+  EXPECT_EQ(difference.only_here, 2);
+  EXPECT_EQ(difference.only_there, 0);
+  ASSERT_TRUE(difference.first);
+  EXPECT_EQ(difference.first->quantity, "total_j") << "a number that differs comes first";
+  EXPECT_EQ(reverse.only_here, 0);
+  EXPECT_EQ(reverse.only_there, 2);
+}
+
 }  // namespace
 }  // namespace ed3r::store

@@ -180,6 +180,20 @@ TEST_F(GrowthTest, AFailureAndNetworksGrowThePlanToo) {
   }
 }
 
+// The file is sealed again as it grows: what did not match its seal before still does not.
+TEST_F(GrowthTest, NetworksOfAnotherNameAreDamageStill) {
+  const sweep::SweepPlan few = Learning({"warmup"}, 10, 8), more = Learning({"warmup"}, 10, 12);
+  Fly(Dir(), few);
+  PutNetwork(Dir(), few, "aaaa");
+  Connection(ResultsIn(Dir()), Connection::Access::kReadWrite)
+      .Execute("UPDATE networks SET name = 'another network'");
+  Fly(Dir(), more);
+  EXPECT_EQ(ReadPlan(), more.CanonicalText());
+  EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader(Dir()).Networks(); }), "the names of its networks"));
+  PutNetwork(Dir(), more, "aaaa");
+  EXPECT_EQ(ResultReader(Dir()).Networks().files.at("aaaa").name, "a network");
+}
+
 TEST_F(GrowthTest, ARefusedMergeGrowsNothing) {
   const sweep::SweepPlan few = Masses({1, 3}, 10), more = Masses({1, 2, 3}, 12);
   Fly(Dir(), few);

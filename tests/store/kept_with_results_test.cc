@@ -157,6 +157,16 @@ TEST(FlownNetworksTest, NetworksOfEachOthersNamesAreDamageUntilTheyArePutAgain) 
         "the names of its networks, or which file is whose, do not match their checksum";
     EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader(temp / "run").Networks(); }), damage));
     EXPECT_TRUE(Contains(UserErrorOf([&] { MergeStores(temp / "new", {temp / "run"}); }), damage));
+    // Somebody else's networks do not make these valid, nor none.
+    WriteStore(temp / "other", {{2, 1, 1}});
+    EXPECT_TRUE(Contains(UserErrorOf([&] { MergeStores(temp / "run", {temp / "other"}); }), damage));
+    FlownNetworks one = TwoNetworks();
+    one.files.erase("bbbb");
+    one.uses.pop_back();
+    EXPECT_TRUE(Contains(
+        UserErrorOf([&] { ResultStore::Open(temp / "run", TestRecipe(), TestLayout())->PutNetworks(one); }),
+        damage));
+    EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader(temp / "run").Networks(); }), damage));
     ResultStore::Open(temp / "run", TestRecipe(), TestLayout())->PutNetworks(TwoNetworks());
     EXPECT_EQ(ResultReader(temp / "run").Networks().files.at("bbbb").name, "rc, seed 2");
     EXPECT_EQ(ResultReader(temp / "run").Networks().files.at("bbbb").model, "model two");

@@ -56,7 +56,7 @@ Check CheckOf(store::ResultReader& reader) {
   check.done = check.possible && reader.IsQuicklyCompared();
   if (!check.done) return check;
   check.damage = reader.FindDamage();
-  check.inputs = DamageOfInputs(reader, reader.dir());
+  check.inputs = DamageBesideMissions(reader, reader.dir());
   return check;
 }
 
@@ -103,8 +103,8 @@ void PrintStatus(store::ResultReader& reader, const Check& check) {
 }
 
 // Results are of missions alone, and are whole where they are not damaged themselves.
-void TellDamageOfInputs(store::ResultReader& reader, const std::string& dir) {
-  if (const std::string inputs = DamageOfInputs(reader, dir); !inputs.empty()) Tell("note: {}", inputs);
+void TellDamageBesideMissions(store::ResultReader& reader, const std::string& dir) {
+  if (const std::string inputs = DamageBesideMissions(reader, dir); !inputs.empty()) Tell("note: {}", inputs);
 }
 
 }  // namespace
@@ -225,7 +225,7 @@ int MakeReportOf(const ReportOptions& options) {
                report::ReportText(report), folder.out, report.tables.size(), written.figures);
   FlushOutput();
   TellNotes(run.notes());
-  TellDamageOfInputs(reader, options.dir);
+  TellDamageBesideMissions(reader, options.dir);
   TellLacking(reader, read.whole.provenance.stored, options.dir + ": the report is of");
   if (const std::string& why = read.source.scene.why_not; !why.empty())
     Tell("note: {}: its world is not shown: {}", options.dir, why);
@@ -288,7 +288,7 @@ Command AddDigest(Program& program) {
               fmt::print("{}\n", digest);
             FlushOutput();
             if (!reader.Tables().checked()) Tell("note: {}", store::kNothingToCompare);
-            TellDamageOfInputs(reader, options->dir);
+            TellDamageBesideMissions(reader, options->dir);
             TellNotes(run.notes());
             TellLacking(reader, missions, "this is the digest of");
             return kDone;

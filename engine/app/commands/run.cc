@@ -129,7 +129,7 @@ int Run(const Options& options) {
   const std::string dir = options.out.empty() ? DefaultRunDir(plan) : options.out;
   const bool all_of_it = shard.count == 1 && options.stage.empty() && !options.repair &&
                          !options.only_failed && !options.accept_mixed;
-  if (all_of_it && TellFinishedRun(plan, dir, options.quiet)) return kDone;
+  if (all_of_it && TellFinishedRun(plan, dir, options.cache, options.quiet)) return kDone;
   const schedule::Inputs inputs(plan);
   InstallInterruptHandler();
   if (!options.quiet)
@@ -169,7 +169,7 @@ int Run(const Options& options) {
   if (options.profile) fmt::print("time: {}\n", summary.profile.Text());
   if (summary.flown.interrupted) return ToldEnd();
   if (all_of_it && summary.flown.failed == 0 && summary.waiting_stage.empty())
-    RememberFinishedRun(plan, dir, told, summary.stored_before + summary.flown.stored, table,
+    RememberFinishedRun(plan, dir, options.cache, told, summary.stored_before + summary.flown.stored, table,
                         NetworksText(summary.networks));
   return summary.flown.failed > 0 ? kMissionsFailed : kDone;
 }

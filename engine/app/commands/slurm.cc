@@ -154,11 +154,14 @@ std::string OtherSweep(const fs::path& folder, const SweepArguments& sweep) {
 // A folder that was moved still names the one that it was made for.
 std::string OtherRun(const fs::path& folder, const std::string& run_dir) {
   const std::string common = (folder / "common.sh").string(), text = ReadFile(common), opening = "\nrun=";
-  const std::size_t begin = text.find(opening), end = text.find_first_of(" \n", begin + opening.size());
+  const std::size_t begin = text.find(opening);
   if (begin == std::string::npos) return "";
-  const std::string there = text.substr(begin + opening.size(), end - begin - opening.size());
+  const std::string line =
+      text.substr(begin + opening.size(), text.find('\n', begin + 1) - begin - opening.size());
   const std::string here = schedule::ShellWord(run_dir);
-  if (here.starts_with(there)) return "";  // a word may have blanks
+  // The word may have blanks, and a remark follows it.
+  if (line.starts_with(here) && (line.size() == here.size() || line[here.size()] == ' ')) return "";
+  const std::string there = line.substr(0, line.find("  "));
   return fmt::format("{}: its tasks write into {}, not into {}", common, there, here);
 }
 

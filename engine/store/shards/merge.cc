@@ -47,9 +47,10 @@ class Target {
         cursor_(database, layout, MissionCursor::kOneMission, Steps::kLoad),
         // Merged while it ran and again after its end: the end is the news.
         put_session_(database,
-                     "INSERT INTO sessions VALUES (?, ?, ?, ?, nullif(?, '')) ON CONFLICT DO UPDATE "
+                     "INSERT INTO sessions (session, host, process, begun_utc, ended_utc) VALUES (?, ?, ?, "
+                     "?, nullif(?, '')) ON CONFLICT DO UPDATE "
                      "SET ended_utc = coalesce(excluded.ended_utc, ended_utc)"),
-        put_note_(database, "INSERT OR REPLACE INTO session_notes VALUES (?, ?, ?)"),
+        put_note_(database, "INSERT OR REPLACE INTO session_notes (session, key, value) VALUES (?, ?, ?)"),
         has_mission_(database, "SELECT 1 FROM missions WHERE run = ? AND mission = ?"),
         holds_missions_(database.Int("SELECT count(*) FROM (SELECT 1 FROM missions LIMIT 1)") > 0) {}
 
