@@ -7,6 +7,7 @@
 #include "engine/core/files/csv_table.h"
 #include "engine/sweep/arm_id.h"
 #include "studies/claims/verdict_tables.h"
+#include "studies/tables/data_files.h"
 #include "studies/tables/layout.h"
 #include "studies/variants/difference_text.h"
 #include "studies/variants/variants.h"
@@ -48,8 +49,8 @@ RowNames NamesOf(const std::vector<VariantDifference>& differences) {
 
 RowNames NamesOf(std::span<const metrics::ArmMetrics> metrics) {
   std::vector<std::string> arms, variants;
-  for (const metrics::ArmMetrics& arm : metrics) {
-    const sweep::ArmId id = sweep::ArmId::Of(arm.name);
+  for (const std::string& name : tables::UniqueArmNames(metrics)) {
+    const sweep::ArmId id = sweep::ArmId::Of(name);
     arms.push_back(id.name);
     variants.push_back(id.variant);
   }
@@ -223,12 +224,13 @@ std::string ChangeTable(const VariantStudy& study) {
 std::string VariantValuesText(std::span<const metrics::ArmMetrics> arms) {
   const RowNames names = NamesOf(arms);
   std::string text = "All variants (95 % intervals)\n" + names.Heading();
-  for (const metrics::ArmMetrics& arm : arms) {
-    if (arm.missions == 0) continue;
-    const sweep::ArmId id = sweep::ArmId::Of(arm.name);
+  const std::vector<std::string> unique = tables::UniqueArmNames(arms);
+  for (std::size_t a = 0; a < arms.size(); ++a) {
+    if (arms[a].missions == 0) continue;
+    const sweep::ArmId id = sweep::ArmId::Of(unique[a]);
     text += names.Of(id.name, id.variant);
     for (const char* metric : kComparedMetrics)
-      text += tables::Pad(ValueCell(arm[metric]), kCellWidth, tables::Align::kRight);
+      text += tables::Pad(ValueCell(arms[a][metric]), kCellWidth, tables::Align::kRight);
     text += "\n";
   }
   return text;

@@ -18,6 +18,13 @@ void AddChanges(const claims::ClaimStudy& base, const claims::ClaimStudy& here, 
   }
 }
 
+// As in report.json: STAGE/ARM where several stages have an arm of the name.
+std::string NameAmong(const std::vector<metrics::ArmData>& arms, const metrics::ArmData& arm) {
+  const auto uses = std::count_if(arms.begin(), arms.end(),
+                                  [&](const metrics::ArmData& other) { return other.name == arm.name; });
+  return uses > 1 ? arm.stage + '/' + arm.name : arm.name;
+}
+
 }  // namespace
 
 std::vector<std::string> VariantsOf(std::span<const metrics::ArmData> arms) {
@@ -71,7 +78,8 @@ VariantStudy CompareVariants(std::span<const metrics::ArmData> arms, Verdicts ve
       });
       if (other == here.end()) continue;
       for (const char* metric : kComparedMetrics)
-        study.differences.push_back({DifferenceOf(arm, *other, metric), arm.name, variant, metric});
+        study.differences.push_back(
+            {DifferenceOf(arm, *other, metric), NameAmong(base, arm), variant, metric});
     }
   }
   return study;

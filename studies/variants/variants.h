@@ -18,7 +18,8 @@ namespace ed3r::variants {
 
 // Of one arm, in a variant minus the same in the first variant.
 struct VariantDifference : PairedDifference {
-  std::string arm, variant, metric;
+  std::string arm;  // STAGE/ARM where several stages have one of the name
+  std::string variant, metric;
 };
 
 // A claim of the paper that is judged otherwise than in the first variant.

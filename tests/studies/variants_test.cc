@@ -90,6 +90,18 @@ TEST(VariantsTest, DifferencesArePairedByScenario) {
             "arm,variant,metric,base,difference,lo,hi,pairs,base_networks,networks\nrbs");
 }
 
+TEST(VariantsTest, ArmsOfOneNameInTwoStagesAreToldApart) {
+  std::vector<metrics::ArmData> arms = Study();
+  for (const std::size_t a : {0u, 1u}) {
+    arms.push_back(arms[a]);
+    arms.back().stage = "again";
+  }
+  const variants::VariantStudy study = variants::CompareVariants(arms, variants::Verdicts::kLeftOut);
+  ASSERT_EQ(study.differences.size(), 6u);
+  EXPECT_EQ(study.differences[0].arm, arms[0].stage + "/rbs");
+  EXPECT_EQ(study.differences[3].arm, "again/rbs");
+}
+
 TEST(VariantsTest, LongNamesDoNotRunTogether) {
   std::vector<metrics::ArmData> arms = Study();
   const std::string arm = "random-offload", variant = "robot.mass_kg=3,robot.speed_mps=6.5";
