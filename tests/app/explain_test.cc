@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "engine/store/reader.h"
+#include "engine/store/store.h"
 #include "tests/app/command.h"
 
 namespace ed3r::app {
@@ -220,6 +222,28 @@ TEST_F(ExplainTest, TimestepsAreWrittenWithTheNamesThatExplainUses) {
     EXPECT_EQ(row["halted"], fmt::format("{}", told["timestep"]["halted"].get<int>()));
   }
   EXPECT_GT(rows, 1);
+}
+
+// As another C library would have flown it: candidates of this flight would stand beside numbers of that one.
+TEST_F(ExplainTest, AMissionThatIsFlownOtherwiseIsNotExplained) {
+  const ScratchFolder own;
+  const std::string dir = (own / "run").string();
+  fs::copy(Dir(), dir, fs::copy_options::recursive);
+  {
+    store::ResultReader reader(dir);
+    mission::MissionRecord record = reader.LoadMission({0, 0, 2}).record;
+    record.steps.back().reward += 1e-9;
+    const auto stored = store::ResultStore::Open(dir, reader.StoredRecipe(), reader.Layout());
+    stored->Remove({{.run = 0, .mission = 2, .name = "", .what = ""}});
+    stored->Put({0, 0, 2}, record, 0);
+    stored->Commit();
+  }
+  EXPECT_EQ(Ed3r("verify " + dir).status, 0);
+  ExpectRefusal(fmt::format("explain {} rbs/2 --step 1", dir),
+                fmt::format("rbs/2: flown again it is not the stored mission, which other code or another C "
+                            "library flew: there is nothing to explain; 'ed3r replay {} rbs/2' tells more",
+                            dir));
+  EXPECT_EQ(Ed3r(fmt::format("replay {} rbs/2 --out {}", dir, (own / "again").string())).status, 1);
 }
 
 }  // namespace

@@ -124,14 +124,14 @@ int Explain(const Options& options) {
   mission::MissionTask task = run.Task(id);
   task.probe = &probe;
   const mission::MissionRecord flown = mission::FlyMission(task);
+  // Candidates are of this flight: beside numbers of another one they would explain nothing.
+  if (!run.Reader().IsStored(flown, stored))
+    throw UserError(fmt::format(
+        "{0}: flown again it is not the stored mission, which other code or another C library flew: "
+        "there is nothing to explain; 'ed3r replay {1} {0}' tells more",
+        options.mission, options.dir));
   ED3R_CHECK(probe.reached, "the mission ended before the stored one");
-  if (!stored.keeps_timesteps && !run.Reader().IsStored(flown, stored))
-    throw UserError(
-        fmt::format("{}: flown again it differs, and its timesteps are not stored "
-                    "(store.timesteps): there is nothing to explain",
-                    options.mission));
-  const mission::MissionRecord& told = stored.keeps_timesteps ? stored.record : flown;
-  const mission::TimestepRecord& step = told.steps[static_cast<std::size_t>(options.step - 1)];
+  const mission::TimestepRecord& step = flown.steps[static_cast<std::size_t>(options.step - 1)];
   options.json ? PrintJson(task, probe, step) : PrintText(task, probe, step);
   FlushOutput();
   TellNotes(run.Notes());
