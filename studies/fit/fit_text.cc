@@ -42,8 +42,8 @@ void PrintLog(const FitReport& report, std::ostream& out) {
         out, "          recorded climb rate and altitude part by {:.1f} m a flight on average; {} is used\n",
         log.climb_drift_m, log.format.climb_from == ClimbFrom::kAltitude ? "altitude" : "the climb rate");
   if (log.bad_rows > 0)
-    fmt::print(out, "          {} rows that could not be read left out (--skip-bad){}\n", log.bad_rows,
-               log.first_bad.empty() ? "" : "; the first: " + log.first_bad);
+    fmt::print(out, "          {} rows or messages that could not be read left out (--skip-bad){}\n",
+               log.bad_rows, log.first_bad.empty() ? "" : "; the first: " + log.first_bad);
   for (const std::string& note : log.notes) fmt::print(out, "          note: {}\n", note);
   for (const std::string& note : log.format.notes) fmt::print(out, "          note: {}\n", note);
   if (report.segments)

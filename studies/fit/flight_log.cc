@@ -117,12 +117,12 @@ class TableReader {
         if (bad_++ == 0) first_bad_ = error.what();
       }
     }
-    if (bad_ + table_.bad() >
-        kMaxBadShare * static_cast<double>(table_.rows() + static_cast<std::size_t>(table_.bad())))
+    if (bad_ + table_.bad() > flight_logs::kMaxBadShare *
+                                  static_cast<double>(table_.rows() + static_cast<std::size_t>(table_.bad())))
       throw UserError(fmt::format(
           "{}: --skip-bad would leave out {} of {} rows, at most {:g} % are allowed{}", table_.path(),
-          bad_ + table_.bad(), table_.rows() + static_cast<std::size_t>(table_.bad()), 100.0 * kMaxBadShare,
-          first_bad_.empty() ? "" : "; the first: " + first_bad_));
+          bad_ + table_.bad(), table_.rows() + static_cast<std::size_t>(table_.bad()),
+          100.0 * flight_logs::kMaxBadShare, first_bad_.empty() ? "" : "; the first: " + first_bad_));
     return flights;
   }
 

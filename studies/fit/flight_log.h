@@ -54,7 +54,6 @@ inline constexpr int kMinFlightRows = 20;
 inline constexpr int kMinLogRows = 200;
 inline constexpr double kMinLogS = 30.0;
 inline constexpr int kMinHoverRows = 20;
-inline constexpr double kMaxBadShare = 0.1;       // of the rows that skip_bad may leave out
 inline constexpr double kMaxNoPowerShare = 0.05;  // of the rows in flight whose power is 0 or below
 
 // Logs to fit must be long enough and hover; logs to evaluate need one flight.

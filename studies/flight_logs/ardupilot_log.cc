@@ -42,7 +42,8 @@ class ArduPilotReader {
     if (!throttle_.empty()) series.push_back({"throttle_0_1000", &throttle_});
     DecodedLog joined = JoinRows(path_, LogKind::kArduPilot, battery, series, armed_, landed_);
     CheckFlown(joined);
-    joined.bad = log_.bad();
+    joined.bad = log_.skipped().places();
+    if (joined.bad > 0) joined.notes.push_back(log_.skipped().Note());
     joined.notes.push_back(gps ? "speed and climb are the GPS's (3-D fix)"
                                : "speed and climb are the estimator's: no GPS with a 3-D fix");
     return joined;

@@ -83,19 +83,35 @@ bool DataFlashLog::Is(std::string_view bytes) { return bytes.starts_with("\xA3\x
 
 DataFlashLog::DataFlashLog(std::string path, std::string_view bytes, const std::set<std::string>& wanted,
                            bool skip_bad)
-    : path_(std::move(path)), bytes_(bytes) {
+    : path_(std::move(path)), bytes_(bytes), skipped_(path_, bytes) {
   formats_[kFormatType] = {.name = "FMT", .length = kFormatLength, .fields = {}};
   std::size_t at = 0;
   while (at < bytes_.size()) {
     if (IsPadding(bytes_.substr(at, 64)) && IsPadding(bytes_.substr(at))) return;
     try {
       at = ReadMessage(at, wanted);
-    } catch (const UserError&) {
-      if (!skip_bad) throw;
-      ++bad_;
-      at = std::min(bytes_.find(kHead, at + 1), bytes_.size());
+    } catch (const UserError& error) {
+      const std::size_t next = NextWhole(at);
+      skipped_.Add(at, next, error.what());
+      if (!skip_bad)
+        throw UserError(OneLine(fmt::format("{}; --skip-bad reads what is whole", error.what())));
+      at = next;
     }
   }
+}
+
+// Whether what looks like a message is of a kind that is described, and ends within the file.
+bool DataFlashLog::IsWhole(std::size_t at) const {
+  if (bytes_.size() - at < kHeadLength) return false;
+  const Format& format = formats_[LoadLittleEndian<std::uint8_t>(bytes_, at + kHead.size())];
+  return format.length != 0 && bytes_.size() - at >= format.length;
+}
+
+std::size_t DataFlashLog::NextWhole(std::size_t at) const {
+  do {
+    at = std::min(bytes_.find(kHead, at + 1), bytes_.size());
+  } while (at < bytes_.size() && !IsWhole(at));
+  return at;
 }
 
 std::size_t DataFlashLog::ReadMessage(std::size_t at, const std::set<std::string>& wanted) {
@@ -189,7 +205,7 @@ std::optional<double> DataFlashLog::TimeS(const Message& message) const {
 }
 
 void DataFlashLog::Fail(std::size_t at, const std::string& what) const {
-  throw UserError(OneLine(fmt::format("{}: byte {}: {}; --skip-bad reads what is whole", path_, at, what)));
+  throw UserError(fmt::format("{}: byte {}: {}", path_, at, what));
 }
 
 }  // namespace ed3r::flight_logs

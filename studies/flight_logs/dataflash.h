@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/flight_logs/skipped_bytes.h"
+
 namespace ed3r::flight_logs {
 
 class DataFlashLog {
@@ -35,12 +37,12 @@ class DataFlashLog {
 
   // Keeps the messages of the wanted names. Throws UserError (path, byte, what was found): an unknown type, a
   // description that does not add up, a message that the file's end cuts off. With skip_bad such bytes are passed over
-  // up to the next message and counted. `bytes` must outlive the log.
+  // up to the next message that is whole, and are in skipped(). `bytes` must outlive the log.
   DataFlashLog(std::string path, std::string_view bytes, const std::set<std::string>& wanted, bool skip_bad);
 
   const std::vector<Message>& messages() const { return messages_; }  // in the order of the file
   const Format& FormatOf(const Message& message) const { return formats_[message.type]; }
-  int bad() const { return bad_; }
+  const SkippedBytes& skipped() const { return skipped_; }
 
   // A number as the format string scales it (c, C, e, E: hundredths, L: 1e-7); nothing where the message has no such
   // number. `type`, where given, receives the format's letter.
@@ -50,6 +52,8 @@ class DataFlashLog {
   std::optional<double> TimeS(const Message& message) const;
 
  private:
+  bool IsWhole(std::size_t at) const;
+  std::size_t NextWhole(std::size_t at) const;  // behind `at`
   std::size_t ReadMessage(std::size_t at, const std::set<std::string>& wanted);
   void ReadFormat(std::size_t at);
   [[noreturn]] void Fail(std::size_t at, const std::string& what) const;
@@ -58,7 +62,7 @@ class DataFlashLog {
   std::string_view bytes_;
   Format formats_[256];
   std::vector<Message> messages_;
-  int bad_ = 0;
+  SkippedBytes skipped_;
 };
 
 }  // namespace ed3r::flight_logs

@@ -24,6 +24,8 @@ struct LogReading {
   std::optional<int> battery = {};
 };
 inline constexpr int kAllBatteries = -1;
+inline constexpr double kMaxBadShare =
+    0.1;  // of the rows of a table, or a raw log's bytes, that skip_bad may leave out
 
 struct DecodedColumn {
   std::string name;

@@ -34,7 +34,8 @@ class Px4Reader {
     if (!density_.empty()) series.push_back({"air_density_kgm3", &density_});
     DecodedLog joined = JoinRows(path_, LogKind::kPx4, battery, series, armed_, landed_);
     CheckFlown(joined);
-    joined.bad = log_.bad();
+    joined.bad = log_.skipped().places();
+    if (joined.bad > 0) joined.notes.push_back(log_.skipped().Note());
     joined.notes.push_back("speed and climb are the estimator's (vehicle_local_position)");
     if (log_.dropouts() > 0)
       joined.notes.push_back(fmt::format("the logger lost data {} times", log_.dropouts()));

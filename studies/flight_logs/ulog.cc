@@ -54,20 +54,22 @@ bool SplitField(std::string_view text, std::string_view& type, std::size_t& coun
 bool ULog::Is(std::string_view bytes) { return bytes.starts_with(kMagic); }
 
 ULog::ULog(std::string path, std::string_view bytes, const std::set<std::string>& wanted, bool skip_bad)
-    : path_(std::move(path)), bytes_(bytes) {
+    : path_(std::move(path)), bytes_(bytes), skipped_(path_, bytes) {
+  std::size_t at = kHeaderLength;
   try {
     if (bytes_.size() < kHeaderLength)
       Fail(bytes_.size(), "the file ends inside the header: it is truncated");
-    ReadAll(wanted);
-  } catch (const UserError&) {
-    if (!skip_bad) throw;
-    bad_ = 1;
+    ReadAll(at, wanted);
+  } catch (const UserError& error) {
+    skipped_.Add(at, bytes_.size(), error.what());
+    if (!skip_bad)
+      throw UserError(OneLine(fmt::format("{}; --skip-bad reads what stands before", error.what())));
   }
 }
 
 // Data that was appended after a crash begins at a place that the flags name; the message before it may be cut off.
-void ULog::ReadAll(const std::set<std::string>& wanted) {
-  std::size_t at = kHeaderLength, part = 0;
+void ULog::ReadAll(std::size_t& at, const std::set<std::string>& wanted) {
+  std::size_t part = 0;
   while (at < bytes_.size()) {
     while (part < appended_.size() && appended_[part] <= at) ++part;
     const std::size_t end = part < appended_.size() ? appended_[part] : bytes_.size();
@@ -206,8 +208,7 @@ std::optional<double> ULog::TimeS(const Sample& sample) const {
 }
 
 void ULog::Fail(std::size_t at, const std::string& what) const {
-  throw UserError(
-      OneLine(fmt::format("{}: byte {}: {}; --skip-bad reads what stands before", path_, at, what)));
+  throw UserError(fmt::format("{}: byte {}: {}", path_, at, what));
 }
 
 }  // namespace ed3r::flight_logs

@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/flight_logs/skipped_bytes.h"
+
 namespace ed3r::flight_logs {
 
 class ULog {
@@ -36,12 +38,12 @@ class ULog {
 
   // Keeps the samples of the wanted topics. Throws UserError (path, byte, what was found): a format of another
   // generation, a message that the file's end cuts off or that is none, a sample of a topic that was not announced.
-  // With skip_bad reading ends there, and bad() is 1. `bytes` must outlive the log.
+  // With skip_bad reading ends there, and what stands behind is in skipped(). `bytes` must outlive the log.
   ULog(std::string path, std::string_view bytes, const std::set<std::string>& wanted, bool skip_bad);
 
   const std::vector<Topic>& topics() const { return topics_; }
   const std::vector<Sample>& samples() const { return samples_; }  // in the order of the file
-  int bad() const { return bad_; }
+  const SkippedBytes& skipped() const { return skipped_; }
   int dropouts() const { return dropouts_; }
 
   // Nothing where the topic has no such field or the sample ends before it.
@@ -54,7 +56,8 @@ class ULog {
     std::size_t at;
   };
 
-  void ReadAll(const std::set<std::string>& wanted);
+  // `at` is where the message begins that is read.
+  void ReadAll(std::size_t& at, const std::set<std::string>& wanted);
   std::size_t ReadMessage(std::size_t at, std::size_t end, const std::set<std::string>& wanted);
   void ReadFlags(std::size_t at, std::string_view content);
   void ReadDescription(std::size_t at, std::string_view content);
@@ -72,7 +75,8 @@ class ULog {
   std::vector<std::size_t> appended_;  // places where data was appended after a crash
   std::vector<Topic> topics_;
   std::vector<Sample> samples_;
-  int bad_ = 0, dropouts_ = 0;
+  SkippedBytes skipped_;
+  int dropouts_ = 0;
 };
 
 }  // namespace ed3r::flight_logs

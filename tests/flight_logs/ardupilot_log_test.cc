@@ -1,5 +1,6 @@
 #include "studies/flight_logs/ardupilot_log.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "studies/flight_logs/read_log.h"
@@ -147,6 +148,30 @@ TEST(ArduPilotLogTest, NamesTheByteOfDamage) {
   const LogTable log = ParseLog("x.bin", bytes, {.skip_bad = true});
   EXPECT_GE(log.bad(), 1);
   EXPECT_GE(log.rows(), 387u);
+}
+
+// Messages that nothing describes took seconds a megabyte, and a hole of any size was one bad row.
+TEST(ArduPilotLogTest, SkipsNoMoreThanATenthOfTheFile) {
+  const std::string bytes = NewLog();
+  const auto with_hole = [&](std::size_t length) {
+    std::string text = bytes, hole;
+    while (hole.size() < length) hole += "\xA3\x95\x63-";
+    return text.insert(text.size() / 2 - 3, hole.substr(0, length));
+  };
+  const std::size_t few = bytes.size() / 20, many = bytes.size() / 4;
+  const LogTable log = ParseLog("x.bin", with_hole(few), {.skip_bad = true});
+  EXPECT_GE(log.rows(), 388u);
+  EXPECT_NE(log.notes().end()[-2].find("bytes could not be read, the first is byte"), std::string::npos);
+  const std::string message = Complaint([&] { ParseLog("x.bin", with_hole(many), {.skip_bad = true}); });
+  EXPECT_NE(message.find(fmt::format(" of {} bytes, at most 10 % are allowed", bytes.size() + many)),
+            std::string::npos)
+      << message;
+  EXPECT_EQ(Complaint([&] {
+              ParseLog("x.bin", bytes.substr(0, bytes.size() - 5) + std::string(bytes.size(), '\xFF'),
+                       {.skip_bad = true});
+            }),
+            "")
+      << "cut off before flash that was never written";
 }
 
 TEST(ArduPilotLogTest, RefusesDescriptionsThatDoNotAddUp) {

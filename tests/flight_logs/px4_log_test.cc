@@ -1,6 +1,10 @@
 #include "studies/flight_logs/px4_log.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <utility>
 
 #include "studies/flight_logs/read_log.h"
 #include "tests/flight_logs/complaint.h"
@@ -109,6 +113,34 @@ TEST(Px4LogTest, NamesTheByteOfDamage) {
   const LogTable log = ParseLog("x.ulg", bytes + "garbage", {.skip_bad = true});
   EXPECT_EQ(log.bad(), 1);
   EXPECT_EQ(log.rows(), 200u);
+}
+
+// One bit at a third of the flight: what stands behind it was left out as "1 rows".
+TEST(Px4LogTest, SkipsNoMoreThanATenthOfTheFile) {
+  const std::string bytes = Log();
+  const std::size_t written = bytes.size() - 8;  // zeros at the end are as flash that was never written
+  const auto with_bad_type_at = [&](double share) {
+    std::string text = bytes;
+    const std::size_t at =
+        text.find("D\x02", static_cast<std::size_t>(share * static_cast<double>(text.size())));
+    text[at] = '\x04';
+    return std::pair{text, at - 2};
+  };
+  const auto [third, third_at] = with_bad_type_at(0.33);
+  for (const bool skip_bad : {true, false})
+    EXPECT_EQ(
+        Complaint([&, &text = third] { ParseLog("x.ulg", text, {.skip_bad = skip_bad}); }),
+        fmt::format("x.ulg: byte {}: no message begins here (type 4): the file is damaged; --skip-bad would "
+                    "leave out {} of {} bytes, at most 10 % are allowed",
+                    third_at, written - third_at, written))
+        << "it is not advised where it would be refused";
+  const auto [late, late_at] = with_bad_type_at(0.95);
+  const LogTable log = ParseLog("x.ulg", late, {.skip_bad = true});
+  EXPECT_EQ(log.rows(), 191u);
+  EXPECT_NE(std::find(log.notes().begin(), log.notes().end(),
+                      fmt::format("x.ulg: {} of {} bytes could not be read, the first is byte {}",
+                                  written - late_at, written, late_at)),
+            log.notes().end());
 }
 
 TEST(Px4LogTest, RefusesDescriptionsThatDoNotAddUp) {
