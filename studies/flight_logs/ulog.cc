@@ -137,34 +137,39 @@ void ULog::ReadDescription(std::size_t at, std::string_view content) {
   const std::size_t colon = content.find(':');
   if (colon == std::string_view::npos || colon == 0) Fail(at, "a description without a name");
   descriptions_.emplace(std::string(content.substr(0, colon)),
-                        Description{std::string(content.substr(colon + 1)), at});
+                        Description{.text = std::string(content.substr(colon + 1)), .at = at, .fields = {}});
 }
 
-std::size_t ULog::Describe(std::size_t at, const std::string& name, int depth,
-                           std::vector<Field>* fields) const {
+const ULog::Description& ULog::Describe(std::size_t at, const std::string& name, int depth) {
   constexpr int kMaxDepth = 8;
   constexpr std::size_t kMaxBytes = 1 << 16;  // a message has no more
   const auto found = descriptions_.find(name);
   if (found == descriptions_.end()) Fail(at, fmt::format("topic '{}' is not described", name));
-  if (depth > kMaxDepth) Fail(at, fmt::format("descriptions nest more than {} deep", kMaxDepth));
-  std::size_t size = 0, begin = 0;
-  const std::string& text = found->second.text;
-  while (begin < text.size()) {
+  Description& description = found->second;
+  if (depth + description.levels > kMaxDepth)
+    Fail(at, fmt::format("descriptions nest more than {} deep", kMaxDepth));
+  if (description.described) return description;
+  const std::string& text = description.text;
+  for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(';', begin), text.size());
     std::string_view type, field;
     std::size_t count = 0;
     if (!SplitField(std::string_view(text).substr(begin, end - begin), type, count, field))
-      Fail(found->second.at, fmt::format("topic '{}': a field that is not 'type name'", name));
-    const BasicType* basic = FindBasic(type);
-    if (fields != nullptr && basic != nullptr) fields->push_back({std::string(field), basic->letter, size});
-    const std::size_t one =
-        basic != nullptr ? basic->size : Describe(at, std::string(type), depth + 1, nullptr);
-    size += one * count;
-    if (size > kMaxBytes)
-      Fail(found->second.at, fmt::format("topic '{}' takes more than {} bytes", name, kMaxBytes));
+      Fail(description.at, fmt::format("topic '{}': a field that is not 'type name'", name));
+    if (const BasicType* basic = FindBasic(type); basic != nullptr) {
+      description.fields.push_back({std::string(field), basic->letter, description.size});
+      description.size += basic->size * count;
+    } else {
+      const Description& inner = Describe(at, std::string(type), depth + 1);
+      description.size += inner.size * count;
+      description.levels = std::max(description.levels, inner.levels + 1);
+    }
+    if (description.size > kMaxBytes)
+      Fail(description.at, fmt::format("topic '{}' takes more than {} bytes", name, kMaxBytes));
     begin = end + 1;
   }
-  return size;
+  description.described = true;
+  return description;
 }
 
 void ULog::ReadSubscription(std::size_t at, std::string_view content, const std::set<std::string>& wanted) {
@@ -173,13 +178,13 @@ void ULog::ReadSubscription(std::size_t at, std::string_view content, const std:
   const auto number = LoadLittleEndian<std::uint16_t>(content, 1);
   Topic topic{.name = std::string(content.substr(kName)),
               .instance = static_cast<unsigned char>(content[0]),
-              .fields = {}};
+              .fields = nullptr};
   if (numbers_.contains(number)) Fail(at, fmt::format("message number {} is given twice", number));
   if (!wanted.contains(topic.name)) {
     numbers_[number] = std::nullopt;
     return;
   }
-  Describe(at, topic.name, 0, &topic.fields);
+  topic.fields = &Describe(at, topic.name, 0).fields;
   numbers_[number] = static_cast<std::uint16_t>(topics_.size());
   topics_.push_back(std::move(topic));
 }
@@ -194,7 +199,7 @@ void ULog::ReadSample(std::size_t at, std::string_view content) {
 }
 
 std::optional<double> ULog::Number(const Sample& sample, std::string_view name) const {
-  const std::vector<Field>& fields = topics_[sample.topic].fields;
+  const std::vector<Field>& fields = *topics_[sample.topic].fields;
   const auto field = std::find_if(fields.begin(), fields.end(),
                                   [&](const Field& candidate) { return candidate.name == name; });
   if (field == fields.end()) return std::nullopt;

@@ -31,7 +31,7 @@ class ULog {
   struct Topic {
     std::string name;
     int instance = 0;
-    std::vector<Field> fields;
+    const std::vector<Field>* fields = nullptr;  // of its description, which the log keeps
   };
 
   static bool Is(std::string_view bytes);
@@ -54,6 +54,11 @@ class ULog {
   struct Description {
     std::string text;
     std::size_t at;
+    // From here on what Describe makes of the text.
+    bool described = false;
+    std::vector<Field> fields;  // nested ones are counted but not named
+    std::size_t size = 0;       // bytes
+    int levels = 0;             // of descriptions within one another below this one
   };
 
   // `at` is where the message begins that is read.
@@ -63,8 +68,8 @@ class ULog {
   void ReadDescription(std::size_t at, std::string_view content);
   void ReadSubscription(std::size_t at, std::string_view content, const std::set<std::string>& wanted);
   void ReadSample(std::size_t at, std::string_view content);
-  // Fields of a description, nested ones counted but not named; their bytes are returned.
-  std::size_t Describe(std::size_t at, const std::string& name, int depth, std::vector<Field>* fields) const;
+  // Each description is read once: messages may name it as often as they like, and so may other descriptions.
+  const Description& Describe(std::size_t at, const std::string& name, int depth);
   [[noreturn]] void Fail(std::size_t at, const std::string& what) const;
 
   std::string path_;

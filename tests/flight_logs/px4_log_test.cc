@@ -143,6 +143,22 @@ TEST(Px4LogTest, SkipsNoMoreThanATenthOfTheFile) {
             log.notes().end());
 }
 
+// 100 fields of a type of 100 fields, six deep: 100^6 fields without a byte.
+TEST(Px4LogTest, ReadsEachDescriptionOnce) {
+  ULogWriter log;
+  log.Message('F', "L0:");
+  for (int level = 1; level <= 6; ++level) {
+    std::string text = fmt::format("L{}:", level);
+    for (int i = 0; i < 100; ++i) text += fmt::format("L{} a;", level - 1);
+    log.Message('F', text);
+  }
+  log.Message('F', "battery_status:uint64_t timestamp;L6 x;float voltage_v;float current_a;");
+  log.Topic(1, 0, "battery_status");
+  for (std::uint64_t us = 0; us < 1000000; us += 100000) log.Sample(1, Bytes().Put(us).Put(16.0F).Put(12.0F));
+  EXPECT_EQ(Complaint([&] { ParseLog("x.ulg", log.log, {}); }),
+            "x.ulg: no velocity: vehicle_local_position is not in the log");
+}
+
 TEST(Px4LogTest, RefusesDescriptionsThatDoNotAddUp) {
   const auto complaint = [](const std::string& description) {
     ULogWriter log;
@@ -153,6 +169,19 @@ TEST(Px4LogTest, RefusesDescriptionsThatDoNotAddUp) {
   EXPECT_NE(
       complaint("battery_status:uint64_t timestamp;battery_status inner;").find("nest more than 8 deep"),
       std::string::npos);
+  const auto nested = [&](int levels) {
+    ULogWriter log;
+    log.Message('F', "L0:float x;");
+    for (int level = 1; level <= levels; ++level)
+      log.Message('F', fmt::format("L{}:L{} x;", level, level - 1));
+    log.Message('F', "vehicle_air_data:L6 x;");
+    log.Message('F', fmt::format("battery_status:L{} x;", levels));
+    log.Topic(1, 0, "vehicle_air_data");
+    log.Topic(2, 0, "battery_status");
+    return Complaint([&] { ParseLog("x.ulg", log.log, {}); });
+  };
+  EXPECT_EQ(nested(7).find("nest more than 8 deep"), std::string::npos);
+  EXPECT_NE(nested(8).find("nest more than 8 deep"), std::string::npos) << "of which six were read before";
   EXPECT_NE(complaint("battery_status:uint64_t[60000] x;").find("takes more than 65536 bytes"),
             std::string::npos);
   EXPECT_NE(complaint("battery_status:uint64_t").find("a field that is not 'type name'"), std::string::npos);
