@@ -64,7 +64,7 @@ class ArduPilotReader {
     if (name == "BAT" || name == "BAT2" || name == "CURR" || name == "CUR2")
       return TakeBattery(message, name, *stamp);
     if (name == "GPS") return TakeGps(message, *stamp);
-    if (name == "BARO") return Add(baro_altitude_, *stamp, log_.Number(message, "Alt"));
+    if (name == "BARO") return TakeBarometer(message, *stamp);
     if (name == "CTUN") {
       Add(altitude_, *stamp, log_.Number(message, "Alt"));
       if (const auto whole = log_.Number(message, "ThrOut")) return AddThrottle(*stamp, *whole);
@@ -110,9 +110,18 @@ class ArduPilotReader {
     if (!battery_throttle_) throttle_.Add(time_s, throttle);
   }
 
+  // Of several receivers, barometers or estimator cores: `field` numbers them, where the log has it.
+  bool IsFirst(const DataFlashLog::Message& message, std::string_view field) const {
+    return log_.Number(message, field).value_or(0.0) < 0.5;
+  }
+
+  void TakeBarometer(const DataFlashLog::Message& message, double time_s) {
+    if (IsFirst(message, "I")) Add(baro_altitude_, time_s, log_.Number(message, "Alt"));
+  }
+
   void TakeGps(const DataFlashLog::Message& message, double time_s) {
     constexpr double kFix3d = 3.0;
-    if (log_.Number(message, "I").value_or(0.0) > 0.5) return;  // the first receiver
+    if (!IsFirst(message, "I")) return;
     const auto status = log_.Number(message, "Status"), speed = log_.Number(message, "Spd"),
                down = log_.Number(message, "VZ");
     if (!status || *status < kFix3d || !speed || !down) return;
@@ -121,7 +130,7 @@ class ArduPilotReader {
   }
 
   void TakeEstimator(const DataFlashLog::Message& message, const std::string& name, double time_s) {
-    if (log_.Number(message, "C").value_or(0.0) > 0.5) return;  // the first core
+    if (!IsFirst(message, "C")) return;
     const int rank = name == "XKF1" ? 3 : name == "NKF1" ? 2 : 1;
     if (rank < estimator_rank_) return;
     if (rank > estimator_rank_) speed_ = climb_ = {};

@@ -108,6 +108,30 @@ TEST(ArduPilotLogTest, ReadsHundredthsAndGpsTimeOfOldLogs) {
   EXPECT_FALSE(table.OnGround(3)) << "such a log does not tell";
 }
 
+// Rows took the altitude of either, and 3 m between them looked like a climb of 30 m/s.
+TEST(ArduPilotLogTest, TakesTheFirstBarometerAndTheFirstReceiver) {
+  DataFlashWriter log;
+  log.Format(10, 3 + 8 + 4 + 4, "BAT", "Qff", "TimeUS,Volt,Curr");
+  log.Format(11, 3 + 8 + 1 + 1 + 4 + 4, "GPS", "QBBff", "TimeUS,I,Status,Spd,VZ");
+  log.Format(12, 3 + 8 + 1 + 4, "BARO", "QBf", "TimeUS,I,Alt");
+  for (std::uint64_t us = 0; us < 1000000; us += 100000) {
+    for (const std::uint8_t instance : {1, 0, 1}) {
+      const std::uint64_t stamp = us + (instance == 0 ? 10000 : 0);
+      log.Message(
+          11,
+          Bytes().Put(stamp).Put(instance).Put(std::uint8_t{3}).Put(instance == 0 ? 2.0F : 5.0F).Put(0.0F));
+      log.Message(12, Bytes().Put(stamp).Put(instance).Put(instance == 0 ? 20.0F : 23.0F));
+    }
+    log.Message(10, Bytes().Put(us).Put(15.0F).Put(10.0F));
+  }
+  const LogTable table = ParseLog("x.bin", log.log, {});
+  ASSERT_EQ(table.rows(), 10u);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    EXPECT_DOUBLE_EQ(At(table, row, "altitude_m"), 20.0);
+    EXPECT_DOUBLE_EQ(At(table, row, "ground_speed_mps"), 2.0);
+  }
+}
+
 TEST(ArduPilotLogTest, RefusesLogsWithoutPower) {
   const auto complaint = [](const Made& made) {
     return Complaint([&] { ParseLog("x.bin", NewLog(made), {}); });
