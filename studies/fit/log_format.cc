@@ -11,6 +11,7 @@
 #include "engine/core/check.h"
 #include "engine/core/files/file.h"
 #include "engine/core/files/yaml_reader.h"
+#include "engine/core/parse_number.h"
 #include "engine/core/suggest.h"
 
 namespace ed3r::fit {
@@ -129,10 +130,10 @@ class FormatReader {
   }
 
   static double Number(const Entry& entry, double min, double max) {
-    const std::string& text = entry.value.text;
-    const char *begin = text.data() + (text.starts_with('+') ? 1 : 0), *end = text.data() + text.size();
+    const std::string_view text = WithoutPlus(entry.value.text);
+    const char* end = text.data() + text.size();
     double number = 0.0;
-    const auto [stop, error] = std::from_chars(begin, end, number);
+    const auto [stop, error] = std::from_chars(text.data(), end, number);
     if (error != std::errc() || stop != end || !(number >= min && number <= max))
       FailAt(entry.value.at, fmt::format("{}: {} is not allowed; allowed: {:g} .. {:g}", entry.key,
                                          Described(entry.value), min, max));

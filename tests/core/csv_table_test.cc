@@ -37,6 +37,18 @@ TEST(CsvTableTest, AColumnWithoutANameIsCalledByItsPlaceInTablesOfOtherPrograms)
   EXPECT_EQ(Refusal("a,,b\n"), "t.csv:1:3: column 2 has no name");
 }
 
+TEST(CsvTableTest, OnePlusMayStandBeforeANumberAndNoOtherSign) {
+  const CsvTable table = CsvTable::Parse("t.csv", "a,b,c\n+1,+.5,+-1\n");
+  EXPECT_EQ(table.Number(0, 0, -9, 9), 1.0);
+  EXPECT_EQ(table.Number(0, 1, -9, 9), 0.5);
+  try {
+    table.Number(0, 2, -9, 9);
+    ADD_FAILURE() << "it was -1";
+  } catch (const UserError& error) {
+    EXPECT_STREQ(error.what(), "t.csv:2:8: c: '+-1' is not a number");
+  }
+}
+
 TEST(CsvTableTest, RowsOfDelimitersAloneAtTheEndAreLeftOut) {
   const std::string text = "a;b\n1;2\n;\n3;4\n;\n \"\";\n\n";
   EXPECT_EQ(CsvTable::Parse("t.csv", text, CsvComments::kHash, ';').rows(), 3u) << "not those between";

@@ -165,6 +165,8 @@ TEST(LogFormatTest, NamesTheMistake) {
             "f.yaml:1:24: max_speed_mps: 'fast' is not allowed; allowed: 0.01 .. 20");
   EXPECT_EQ(complaint("robot: {mass_kg: 900}"),
             "f.yaml:1:18: robot.mass_kg: '900' is not allowed; allowed: 0.05 .. 50 kg");
+  EXPECT_EQ(complaint("units: {climb_mps: +-1}"),
+            "f.yaml:1:20: climb_mps: '+-1' is not allowed; allowed: -1e+09 .. 1e+09");
   EXPECT_EQ(complaint("units: {climb_mps: 0}"), "f.yaml:1:20: units: a factor of 0 loses the column");
   EXPECT_EQ(complaint("columns: {voltage_v: u, current_a: u}"),
             "f.yaml:1:36: columns: 'u' is both voltage_v and current_a; allowed: one meaning a column");

@@ -12,6 +12,7 @@
 #include "engine/core/check.h"
 #include "engine/core/files/file.h"
 #include "engine/core/message.h"
+#include "engine/core/parse_number.h"
 #include "engine/core/suggest.h"
 
 namespace ed3r {
@@ -160,11 +161,10 @@ std::string CsvTable::Text(std::size_t row, std::size_t column) const {
 }
 
 double CsvTable::Number(std::size_t row, std::size_t column, double min, double max) const {
-  const std::string_view cell = Cell(row, column);
+  const std::string_view cell = Cell(row, column), number = WithoutPlus(cell);
   double value = 0.0;
-  const char* end = cell.data() + cell.size();
-  const char* begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
-  const auto [stop, error] = std::from_chars(begin, end, value);
+  const char* end = number.data() + number.size();
+  const auto [stop, error] = std::from_chars(number.data(), end, value);
   if (cell.empty() || error != std::errc() || stop != end || !std::isfinite(value))
     throw UserError(fmt::format("{}'{}' is not a number{}", Where(row, column), cell, Hint(cell)));
   if (value < min || value > max)

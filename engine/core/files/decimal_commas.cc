@@ -11,6 +11,7 @@
 #include "engine/core/check.h"
 #include "engine/core/files/csv_table.h"
 #include "engine/core/message.h"
+#include "engine/core/parse_number.h"
 
 namespace ed3r {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 constexpr std::string_view kDigits = "0123456789";
 
 bool IsNumber(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
+  text = WithoutPlus(text);
   double value = 0.0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && stop == text.data() + text.size();
