@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -11,103 +10,10 @@
 #include <utility>
 
 #include "engine/core/check.h"
+#include "studies/fit/unit_names.h"
 
 namespace ed3r::fit {
 namespace {
-
-struct UnitWord {
-  std::string_view ending;  // of the meanings whose unit is another one
-  double factor;            // 0: none makes ours of it
-  std::string_view words;   // of the column's name: any of them, between blanks
-};
-
-// Words of column names that say another unit than ours.
-constexpr UnitWord kUnitWords[] = {
-    {"_s", 1e-9, " ns nsec nanosecond nanoseconds "},
-    {"_s", 1e-6, " us usec microsecond microseconds "},
-    {"_s", 1e-3, " ms msec millisecond milliseconds "},
-    {"_s", 60, " min mins minutes "},
-    {"_s", 3600, " h hr hrs hour hours "},
-    {"_w", 1e3, " kw kilowatt kilowatts "},
-    {"_w", 1e-3, " mw milliwatt milliwatts "},
-    {"_w", 745.7, " hp horsepower "},
-    {"_w", 0, " wh kwh mwh kj joule joules "},
-    {"_v", 1e-3, " mv millivolt millivolts "},
-    {"_a", 1e-3, " ma milliamp milliamps milliampere milliamperes "},
-    {"_a", 0, " ah mah "},
-    {"_mps", 1 / 3.6, " kmh kmhr kph kmph kilometersperhour kilometresperhour "},
-    {"_mps", 0.44704, " mph mih milesperhour "},
-    {"_mps", 0.514444, " kn kt kts knot knots "},
-    {"_mps", 0.00508, " fpm ftmin feetperminute "},
-    {"_mps", 0.3048, " fps fts ftsec feetpersecond "},
-    {"_mps", 0.9144, " yds ydsec yardspersecond "},
-    {"_mps", 1.0 / 60.0, " mmin metersperminute metresperminute "},
-    {"_mps", 0.1, " dms dmsec "},
-    {"_mps", 0.01, " cms cmsec "},
-    {"_mps", 0.001, " mms mmsec "},
-    {"_m", 0.3048, " ft foot feet usft ftus "},
-    {"_m", 0.9144, " yd yds yard yards "},
-    {"_m", 1.8288, " fathom fathoms "},
-    {"_m", 0.0254, " inch inches "},
-    {"_m", 1852, " nmi "},
-    {"_m", 1609.344, " mile miles "},
-    {"_m", 1e3, " km kilometer kilometers kilometre kilometres "},
-    {"_m", 0.1, " dm decimeter decimeters decimetre decimetres "},
-    {"_m", 0.01, " cm centimeter centimeters centimetre centimetres "},
-    {"_m", 1e-3, " mm millimeter millimeters millimetre millimetres "},
-    {"_kg", 1e-3, " g gr gram grams "},
-    {"_kg", 0.453592, " lb lbs pound pounds "},
-    {"_kg", 0.0283495, " oz ounce ounces "}};
-
-// Whether a capital after a small letter begins a word, as in speedKmh but not in power_kW.
-enum class Capitals { kPlain, kBeginWords };
-
-// The words of a name, in lower case.
-std::vector<std::string> WordsOf(std::string_view name, Capitals capitals) {
-  std::vector<std::string> words(1);
-  bool small = false;
-  for (const char c : name) {
-    const auto letter = static_cast<unsigned char>(c);
-    const bool begins = capitals == Capitals::kBeginWords && small && std::isupper(letter) != 0;
-    if ((begins || std::isalpha(letter) == 0) && !words.back().empty()) words.emplace_back();
-    if (std::isalpha(letter) != 0) words.back() += static_cast<char>(std::tolower(letter));
-    small = std::islower(letter) != 0;
-  }
-  if (words.back().empty() && words.size() > 1) words.pop_back();
-  return words;
-}
-
-// Adds to the words of a name those that a quotient makes of two or three: km/h, km_h, km h-1 and km per h are kmh, too.
-void AddQuotients(std::vector<std::string>& words) {
-  constexpr std::string_view
-      kLengths = " km dm cm mm ft m mi yd kilometers kilometres meters metres miles feet yards ",
-      kTimes = " h hr s sec min hour second minute ";
-  const auto among = [](std::string_view list, const std::string& word) {
-    return list.find(fmt::format(" {} ", word)) != std::string_view::npos;
-  };
-  for (std::size_t i = 0, size = words.size(); i + 1 < size; ++i) {
-    if (!among(kLengths, words[i])) continue;
-    const bool per = words[i + 1] == "per" && i + 2 < size;
-    const std::string time = words[i + (per ? 2 : 1)];
-    if (!among(kTimes, time)) continue;
-    words.push_back(words[i] + time);
-    words.push_back(words[i] + "per" + time);
-  }
-}
-
-// The word of a name that says another unit than ours for `meaning`, and the factor from it; or none.
-std::optional<std::pair<std::string, double>> OtherUnit(std::string_view meaning, std::string_view name) {
-  for (const Capitals capitals : {Capitals::kPlain, Capitals::kBeginWords}) {
-    std::vector<std::string> words = WordsOf(name, capitals);
-    if (meaning.ends_with("_mps")) AddQuotients(words);
-    for (const UnitWord& unit : kUnitWords)
-      for (const std::string& word : words)
-        if (meaning.ends_with(unit.ending) && !word.empty() &&
-            unit.words.find(fmt::format(" {} ", word)) != std::string_view::npos)
-          return std::pair{word, unit.factor};
-  }
-  return std::nullopt;
-}
 
 double Quantile(std::vector<double> values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -118,7 +24,7 @@ double Quantile(std::vector<double> values, double share) {
 std::optional<std::string> ColumnThatBegins(const flight_logs::LogTable& table, std::string_view a,
                                             std::string_view b) {
   for (const std::string& name : table.columns()) {
-    const std::string first = WordsOf(name, Capitals::kPlain).front();
+    const std::string first = FirstWord(name);
     if (first.starts_with(a) || (!b.empty() && first.starts_with(b))) return name;
   }
   return std::nullopt;

@@ -50,7 +50,27 @@ TEST(UnitNamesTest, OtherUnitsAreHeardHoweverTheyAreSpelt) {
         {"speed cm s^-1", "0.01"},
         {"speed yd/s", "0.9144"},
         {"speed mm/s", "0.001"},
-        {"speed_ft_min", "0.00508"}}},
+        {"speed_ft_min", "0.00508"},
+        {"speed_ftps", "0.3048"},
+        {"speed_feet_per_s", "0.3048"},
+        {"speed_ftpm", "0.00508"},
+        {"speed_feet/min", "0.00508"},
+        {"speed_cmps", "0.01"},
+        {"speed_mmps", "0.001"},
+        {"speed_dmps", "0.1"},
+        {"speed_miph", "0.44704"},
+        {"speed miles/h", "0.44704"},
+        {"speed_mpm", "0.0166667"},
+        {"speed_kmperh", "0.277778"},
+        {"speed km per hour", "0.277778"},
+        {"speedKmPerHour", "0.277778"},
+        {"speed_knts", "0.514444"},
+        {"KIAS", "0.514444"},
+        {"v_NM_h", "0.514444"},
+        {"speed_nmph", "0.514444"},
+        {"nautical miles per hour", "0.514444"}}},
+      {"voltage_v", {{"battery_cV", "0.01"}}},
+      {"current_a", {{"current_cA", "0.01"}}},
       {"ground_speed_mps", {{"gs (kn)", "0.514444"}}},
       {"time_s", {{"time [h]", "3600"}}},
       {"climb_mps", {{"vs_ft_min", "0.00508"}, {"vs (ft/min)", "0.00508"}, {"vs m min-1", "0.0166667"}}},
@@ -117,8 +137,9 @@ TEST(UnitNamesTest, DaysAreHeard) {
 }
 
 TEST(UnitNamesTest, NamesThatMerelyHaveSuchLettersAreTaken) {
-  for (const char* name :
-       {"speed_m_s", "Speed [m s-1]", "airspeedMps", "known_speed", "speed_over_km", "hkmhs"})
+  for (const char* name : {"speed_m_s", "Speed [m s-1]", "airspeedMps", "known_speed", "speed_over_km",
+                           "hkmhs", "speed_mps", "speed m/sec", "v_metres_per_second", "metersPerSecond",
+                           "ins_speed", "min_speed", "speed_ms_h", "speed_m_h", "kms_speed"})
     EXPECT_EQ(Says("airspeed_mps", name), "") << name;
   for (const char* name : {"time_m_s", "Time (s)", "timestamp"}) EXPECT_EQ(Says("time_s", name), "") << name;
   for (const char* name : {"power_w", "PowerW", "maximum"}) EXPECT_EQ(Says("power_w", name), "") << name;
