@@ -304,6 +304,18 @@ TEST_F(StemMapTest, TwoTreesAtOneSpotAreNamedOrTheTallestStays) {
             std::vector<std::string>{"stem map: 2 of 4 trees left out, each at the spot of a taller one"});
 }
 
+// Each taller than those before it: all of them were looked at again for each.
+TEST_F(StemMapTest, OfVeryManyTreesAtOneSpotTheTallestStays) {
+  std::string text = kHeader + kRows;
+  for (int i = 1; i <= 100'000; ++i) text += fmt::format("3,7.004,25,{:.4f},9,2\n", 20 + 1e-4 * i);
+  spec.tallest_of_a_spot = true;
+  const StemMap map = Read(text);
+  ASSERT_EQ(map.stems.size(), 2u);
+  EXPECT_EQ(map.stems[1].height_m, 30.0);
+  EXPECT_EQ(map.notes, std::vector<std::string>{
+                           "stem map: 100000 of 100002 trees left out, each at the spot of a taller one"});
+}
+
 TEST_F(StemMapTest, MissingCrownsAreRefusedUnlessTheyAreToBeEstimated) {
   EXPECT_EQ(Message(kHeader + "3,7,20,15,,2\n63,57,30,21.5,9,2.5\n"),
             "stems.csv:2:11: crown_depth_m: '' is missing; measure it or leave the tree out, or add "

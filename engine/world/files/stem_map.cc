@@ -94,17 +94,20 @@ class StemMapBuilder {
   // Two rows of one tree (another year, a copied line) would stand inside one another.
   void CheckSpots() {
     const std::vector<Stem>& stems = map_.stems;
-    std::unordered_map<std::int64_t, std::vector<std::size_t>> standing;  // by squares of a spot's size
+    std::unordered_map<std::int64_t, std::vector<std::size_t>>
+        standing;  // by squares of a spot's size, without those left out
     std::vector<bool> left_out(stems.size(), false);
     for (std::size_t row = 0; row < stems.size(); ++row) {
       for (const std::int64_t square : SquaresAround(stems[row]))
-        for (const std::size_t other : standing[square]) {
+        std::erase_if(standing[square], [&](std::size_t other) {
           const bool one_spot = std::abs(stems[row].x_m - stems[other].x_m) <= kSpotM &&
                                 std::abs(stems[row].y_m - stems[other].y_m) <= kSpotM;
-          if (!one_spot || left_out[other] || left_out[row]) continue;
+          if (!one_spot || left_out[row]) return false;
           if (!spec_.tallest_of_a_spot) FailSpot(row, other);
-          left_out[stems[row].height_m > stems[other].height_m ? other : row] = true;
-        }
+          const bool taller = stems[row].height_m > stems[other].height_m;
+          left_out[taller ? other : row] = true;
+          return taller;
+        });
       if (!left_out[row]) standing[SquaresAround(stems[row]).front()].push_back(row);
     }
     const auto count = std::count(left_out.begin(), left_out.end(), true);
