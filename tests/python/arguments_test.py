@@ -244,6 +244,19 @@ class ArgumentsTest(unittest.TestCase):
         self.refused("weights: None is not allowed", ed3r.save_network, self.root / "x.onnx", "rc", None, [])
         self.refused(r"weights\[0\]: 'w' is not allowed", ed3r.save_network, self.root / "x.onnx", "rc", "w".split(), [])
 
+    def test_layers_of_times_or_complex_numbers_are_refused(self):
+        """numpy casts them to the count of their unit, and to their real part."""
+        path = self.root / "times.onnx"
+        layers = {"weights": [np.zeros((13, 1))], "biases": [np.zeros(1)], "mean": np.zeros(13), "sd": np.ones(13)}
+        for name, value in layers.items():
+            for kind in ("datetime64[D]", "timedelta64[s]", complex):
+                wrong = [value[0].astype("int64").astype(kind)] if isinstance(value, list) else value.astype("int64").astype(kind)
+                self.refused(name + r"(\[0\])?: .* is not allowed; allowed: an array of numbers", ed3r.save_network, path, "rc",
+                             **{**layers, name: wrong})
+        self.assertFalse(path.exists())
+        ed3r.save_network(path, "rc", [np.zeros((13, 1), int).astype(object)], [[0]])
+        self.assertTrue(path.exists())
+
     def test_masked_values_are_refused(self):
         """numpy.asarray gives what lies beneath the mask."""
         masked = " an array with masked values is not allowed; allowed: arrays with none masked"

@@ -8,9 +8,12 @@ from . import _arguments, _core
 def _array(name, value, kind=np.float32):
     _arguments.unmasked(name, value)
     try:
-        return np.ascontiguousarray(value, kind)
+        array = np.asarray(value)
+        if array.dtype.kind not in "mMc":  # a time would be a count of its unit, a complex number its real part
+            return np.ascontiguousarray(array, kind)
     except (TypeError, ValueError):
-        return _arguments.refuse(name, value, "an array of numbers")
+        pass
+    return _arguments.refuse(name, value, "an array of numbers")
 
 
 def _layers(name, value):
