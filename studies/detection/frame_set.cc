@@ -14,7 +14,6 @@
 #include "engine/core/files/utf8.h"
 #include "engine/core/sha256.h"
 #include "engine/world/files/picture_file.h"
-#include "studies/detection/npy.h"
 
 namespace ed3r::detection {
 namespace {
@@ -93,9 +92,9 @@ FrameSet ReadFrameSet(const std::string& folder) {
   CheckOfManifest(manifest, "labels_csv_sha256", csv, ReadFile(csv, kMaxFrameBytes));
   std::string bytes = ReadFile(npy, kMaxFrameBytes);
   CheckOfManifest(manifest, "frames_npy_sha256", npy, bytes);
-  FrameSet set{.frames = ParseNpy(std::move(bytes), npy), .labels = ReadLabels(csv)};
-  if (set.labels.size() != static_cast<std::size_t>(set.frames.frames))
-    throw UserError(fmt::format("{}: {} rows for {} frames", csv, set.labels.size(), set.frames.frames));
+  FrameSet set{.frames = NpyFrames(std::move(bytes), npy), .labels = ReadLabels(csv)};
+  if (set.labels.size() != static_cast<std::size_t>(set.frames.frames()))
+    throw UserError(fmt::format("{}: {} rows for {} frames", csv, set.labels.size(), set.frames.frames()));
   return set;
 }
 

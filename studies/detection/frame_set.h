@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/perception/image.h"
+#include "studies/detection/npy.h"
 
 namespace ed3r::detection {
 
@@ -20,7 +21,7 @@ struct FrameLabel {
 };
 
 struct FrameSet {
-  perception::FrameStack frames;
+  NpyFrames frames;
   std::vector<FrameLabel> labels;  // one per frame
 };
 

@@ -9,6 +9,9 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "engine/core/check.h"
 
@@ -58,7 +61,8 @@ bool HasKeysOnce(std::string_view header) {
 
 }  // namespace
 
-perception::FrameStack ParseNpy(std::string_view bytes, const std::string& name) {
+NpyFrames::NpyFrames(std::string file, const std::string& name) : bytes_(std::move(file)) {
+  const std::string_view bytes = bytes_;
   constexpr std::size_t kStart = 10;  // magic, version, length of the header
   if (bytes.size() < kStart || !bytes.starts_with(std::string_view("\x93NUMPY\x01\x00", 8)))
     throw UserError(fmt::format("{}: is no NPY 1.0 file", name));
@@ -83,10 +87,24 @@ perception::FrameStack ParseNpy(std::string_view bytes, const std::string& name)
     throw UserError(
         fmt::format("{}: is damaged: it has {} bytes of frames, its header tells of {} frames of {} bytes",
                     name, data, frames, frame));
-  const std::string_view pixels = bytes.substr(kStart + length);
-  return {.frames = static_cast<int>(frames),
-          .width_px = static_cast<int>(width),
-          .height_px = static_cast<int>(height),
+  begin_ = kStart + length;
+  frames_ = static_cast<int>(frames);
+  width_px_ = static_cast<int>(width);
+  height_px_ = static_cast<int>(height);
+}
+
+std::size_t NpyFrames::FrameBytes() const {
+  return 3 * static_cast<std::size_t>(width_px_) * static_cast<std::size_t>(height_px_);
+}
+
+perception::FrameStack NpyFrames::Some(int first, int count) const {
+  ED3R_CHECK(first >= 0 && count >= 0 && count <= frames_ - first, "frames beyond the last");
+  const std::string_view pixels =
+      std::string_view(bytes_).substr(begin_ + FrameBytes() * static_cast<std::size_t>(first),
+                                      FrameBytes() * static_cast<std::size_t>(count));
+  return {.frames = count,
+          .width_px = width_px_,
+          .height_px = height_px_,
           .rgb = std::vector<std::uint8_t>(pixels.begin(), pixels.end())};
 }
 

@@ -51,10 +51,14 @@ class FrameSetTest : public testing::Test {
 TEST_F(FrameSetTest, ReadsFramesAndLabels) {
   ASSERT_TRUE(IsFrameSet(folder_));
   const FrameSet set = ReadFrameSet(folder_);
-  EXPECT_EQ(set.frames.frames, 2);
-  EXPECT_EQ(set.frames.height_px, 2);
-  EXPECT_EQ(set.frames.width_px, 3);
-  EXPECT_EQ(set.frames.rgb[35], 35);
+  EXPECT_EQ(set.frames.frames(), 2);
+  EXPECT_EQ(set.frames.height_px(), 2);
+  EXPECT_EQ(set.frames.width_px(), 3);
+  const perception::FrameStack second = set.frames.Some(1, 1);
+  EXPECT_EQ(second.frames, 1);
+  ASSERT_EQ(second.rgb.size(), 18u);
+  EXPECT_EQ(second.rgb.front(), 18);
+  EXPECT_EQ(second.rgb.back(), 35);
   EXPECT_EQ(set.labels[0].world, "a, b");
   EXPECT_EQ(set.labels[0].view, 7);
   EXPECT_EQ(set.labels[0].occluded, 0.25);
@@ -81,7 +85,7 @@ TEST_F(FrameSetTest, RefusesFilesThatDoNotFit) {
 
 TEST_F(FrameSetTest, ReadsAHeaderThatIsWrittenOtherwise) {
   WriteNpy("( 2,2 ,3, 3 )", 36);
-  EXPECT_EQ(ReadFrameSet(folder_).frames.width_px, 3);
+  EXPECT_EQ(ReadFrameSet(folder_).frames.width_px(), 3);
 }
 
 TEST_F(FrameSetTest, RefusesFilesOfAnotherManifest) {
@@ -93,7 +97,7 @@ TEST_F(FrameSetTest, RefusesFilesOfAnotherManifest) {
   };
   std::ofstream(folder_ / "manifest.json") << "{\"frames_npy_sha256\": \"" << hash("frames.npy")
                                            << "\", \"labels_csv_sha256\": \"" << hash("labels.csv") << "\"}";
-  EXPECT_EQ(ReadFrameSet(folder_).frames.frames, 2);
+  EXPECT_EQ(ReadFrameSet(folder_).frames.frames(), 2);
   WriteLabels(
       "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label\n"
       "0,7,0,a,x,12.5,0,0,0,0\n1,7,1,a,x,12.5,3,4,0.25,1\n");

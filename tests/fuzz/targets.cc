@@ -128,7 +128,7 @@ void FuzzLogFormat(std::string_view bytes) {
 }
 
 void FuzzNpy(std::string_view bytes) {
-  Refusable([&] { detection::ParseNpy(bytes, "frames.npy"); });
+  Refusable([&] { detection::NpyFrames(std::string(bytes), "frames.npy").Some(0, 1); });
 }
 
 void FuzzPicture(std::string_view bytes) {

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -38,6 +40,20 @@ Confidences Look(const perception::DetectorPair& detectors, const perception::Fr
   Confidences found{std::vector<double>(count), std::vector<double>(count)};
   detectors.full->Confidences(frames, found.full);
   detectors.quantized->Confidences(frames, found.quantized);
+  return found;
+}
+
+// Of a recording a part at a time, so that it is in memory once.
+Confidences Look(const perception::DetectorPair& detectors, const detection::NpyFrames& frames) {
+  constexpr std::int64_t kPartBytes = 16 << 20;
+  const std::int64_t frame_bytes = std::int64_t{3} * frames.width_px() * frames.height_px();
+  const int at_once = static_cast<int>(std::max(std::int64_t{1}, kPartBytes / frame_bytes));
+  Confidences found;
+  for (int first = 0; first < frames.frames(); first += at_once) {
+    const Confidences some = Look(detectors, frames.Some(first, std::min(at_once, frames.frames() - first)));
+    found.full.insert(found.full.end(), some.full.begin(), some.full.end());
+    found.quantized.insert(found.quantized.end(), some.quantized.begin(), some.quantized.end());
+  }
   return found;
 }
 
@@ -142,7 +158,7 @@ int Evaluate(const Options& options, const DetectorConfig& config,
         "{} frames; positives of a band are compared with all negatives; 'fire' is said from confidence {} "
         "on\n"
         "\n{:<20} {:<9} {:>6} {:>6} {:^13} {:>5} {:>5} {:>5} {:>5} {:>6}\n",
-        set.frames.frames, detection::kDecision, "", "", "AUC", "acc %", "(95 %)", "TP", "FN", "FP", "TN",
+        set.frames.frames(), detection::kDecision, "", "", "AUC", "acc %", "(95 %)", "TP", "FN", "FP", "TN",
         "ECE");
   for (const auto& [title, groups] : tables)
     for (const detection::Group& group : groups) {
