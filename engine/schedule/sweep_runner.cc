@@ -85,6 +85,15 @@ store::CodeIdentities CodeOf(const sweep::SweepPlan& plan) {
   return identities;
 }
 
+void RefuseOtherCode(const std::string& dir, const store::CodeIdentities& there,
+                     const store::CodeIdentities& here) {
+  if (const auto difference = store::CodeDifference(there, here))
+    throw UserError(fmt::format(
+        "{}: holds results of another recipe: {}; give another --from, or --accept-mixed to build "
+        "on what other code has made",
+        dir, *difference));
+}
+
 mission::MissionTask TaskOf(const sweep::SweepPlan& plan, const Inputs& inputs, const NetworkShelf* networks,
                             const sweep::RunId& id) {
   const sweep::Arm& arm =
@@ -113,10 +122,15 @@ namespace {
 class SweepRun {
  public:
   SweepRun(const sweep::SweepPlan& plan, const Inputs& inputs, const SweepOptions& options)
-      : plan_(plan), inputs_(inputs), options_(options), layout_(store::LayoutOf(plan)) {
-    CheckFoundation();  // what is refused has repaired nothing
+      : plan_(plan),
+        inputs_(inputs),
+        options_(options),
+        layout_(store::LayoutOf(plan)),
+        recipe_(RecipeOf(plan, inputs, options)) {
+    store::Recipe with_foundation = recipe_;
+    store::Join(with_foundation.code, CheckedFoundation());  // what is refused has repaired nothing
     store_ = store::ResultStore::Open(
-        options.dir, RecipeOf(plan, inputs, options), layout_,
+        options.dir, with_foundation, layout_,
         {.other_code = options.accept_mixed ? store::OtherCode::kAccept : store::OtherCode::kRefuse,
          .repair = options.repair ? store::Repair::kYes : store::Repair::kNo,
          .may_grow = !options.only_failed});
@@ -191,23 +205,36 @@ class SweepRun {
            std::filesystem::exists(std::filesystem::path(options_.foundation) / store::kResultsFile);
   }
 
-  // A part that builds on nothing is merged into it later: it may be of a plan that the foundation's grows into then.
-  void CheckFoundation() const {
-    if (StandsOnItself() || !HasFoundation()) return;
+  // The code of what is built upon and lies elsewhere: results of this run are made by it, too. A part that builds on nothing
+  // is merged into the foundation later: it may be of a plan that the foundation's grows into then.
+  store::CodeIdentities CheckedFoundation() const {
+    if (StandsOnItself() || !HasFoundation()) return {};
     store::ResultReader reader(options_.foundation);
     const store::Recipe& there = reader.StoredRecipe();
-    store::Recipe here = RecipeOf(plan_, inputs_, options_);
-    if (there.plan_text == here.plan_text) return RefuseOther(DifferenceOfRun(reader));
-    const store::Growth growth = store::GrowthOf(there, here, store::StagesWithNetworks(reader));
-    if (!growth.Allowed()) RefuseOther(growth.difference);
-    std::erase_if(here.code, [&](const auto& entry) { return !there.code.contains(entry.first); });
-    if (!options_.accept_mixed) RefuseOther(store::CodeDifference(there.code, here.code));
+    if (there.plan_text == recipe_.plan_text) {
+      RefuseOther(reader);
+    } else {
+      const store::Growth growth = store::GrowthOf(there, recipe_, store::StagesWithNetworks(reader));
+      if (!growth.Allowed()) RefuseOther(growth.difference);
+      store::CodeIdentities here = recipe_.code;
+      std::erase_if(here, [&](const auto& entry) { return !there.code.contains(entry.first); });
+      if (!options_.accept_mixed) RefuseOtherCode(options_.foundation, there.code, here);
+    }
+    const bool builds = std::any_of(plan_.stages.begin(), plan_.stages.end(), [&](const sweep::Stage& stage) {
+      return stage.name == options_.stage && !stage.after.empty();
+    });
+    return builds ? there.code : store::CodeIdentities{};
   }
 
-  void RefuseOther(const std::optional<std::string>& difference) const {
-    if (difference)
-      throw UserError(fmt::format("{}: holds results of another recipe: {}; give another --from",
-                                  options_.foundation, *difference));
+  void RefuseOther(const std::string& difference) const {
+    throw UserError(fmt::format("{}: holds results of another recipe: {}; give another --from",
+                                options_.foundation, difference));
+  }
+
+  void RefuseOther(const store::ResultReader& reader) const {
+    const store::Recipe& there = reader.StoredRecipe();
+    if (const auto difference = store::Difference(there, recipe_)) RefuseOther(*difference);
+    if (!options_.accept_mixed) RefuseOtherCode(options_.foundation, there.code, recipe_.code);
   }
 
   // What is stored where the stages before are.
@@ -215,15 +242,8 @@ class SweepRun {
     if (StandsOnItself()) return store_->Stored();
     if (!HasFoundation()) return {};
     store::ResultReader reader(options_.foundation);
-    RefuseOther(DifferenceOfRun(reader));
+    RefuseOther(reader);
     return reader.Stored();
-  }
-
-  std::optional<std::string> DifferenceOfRun(const store::ResultReader& reader) const {
-    const store::Recipe here = RecipeOf(plan_, inputs_, options_);
-    if (auto difference = store::Difference(reader.StoredRecipe(), here)) return difference;
-    return options_.accept_mixed ? std::nullopt
-                                 : store::CodeDifference(reader.StoredRecipe().code, here.code);
   }
 
   bool Ready(const sweep::Stage& stage) const {
@@ -370,6 +390,7 @@ class SweepRun {
   const Inputs& inputs_;
   const SweepOptions& options_;
   const store::RunLayout layout_;
+  const store::Recipe recipe_;  // what this session itself flies by
   std::unique_ptr<store::ResultStore> store_;
   std::unique_ptr<NetworkShelf> networks_;
   std::vector<sweep::RunId> again_;  // missions that have failed, where only those are asked for

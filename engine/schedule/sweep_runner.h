@@ -23,6 +23,10 @@ namespace ed3r::schedule {
 // The code that decides this plan's results: of the subsystems that its arms use, and of the C library's mathematical functions.
 store::CodeIdentities CodeOf(const sweep::SweepPlan& plan);
 
+// UserError where the run that a stage builds on, in `dir`, was made by code `there` that is not all of this program's, `here`.
+void RefuseOtherCode(const std::string& dir, const store::CodeIdentities& there,
+                     const store::CodeIdentities& here);
+
 // What a plan makes of a mission: the same for flying, replaying and explaining.
 // `networks` may be null for arms that ask none. Plan, inputs and networks must outlive the task.
 mission::MissionTask TaskOf(const sweep::SweepPlan& plan, const Inputs& inputs, const NetworkShelf* networks,

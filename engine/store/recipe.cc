@@ -41,6 +41,11 @@ std::string CodeText(const CodeIdentities& code) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+void Join(CodeIdentities& code, const CodeIdentities& other) {
+  for (const auto& [subsystem, identities] : other)
+    code[subsystem].insert(identities.begin(), identities.end());
+}
+
 bool MixedCode(const CodeIdentities& code) {
   return std::any_of(code.begin(), code.end(), [](const auto& entry) { return entry.second.size() > 1; });
 }

@@ -18,6 +18,9 @@ inline constexpr const char* kMathLibrary =
 // "flight 0123abcd, training 4567 and 89ab"
 std::string CodeText(const CodeIdentities& code);
 
+// Adds the identities of `other`: what was made by both.
+void Join(CodeIdentities& code, const CodeIdentities& other);
+
 // Whether any subsystem has several identities.
 bool MixedCode(const CodeIdentities& code);
 

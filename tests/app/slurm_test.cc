@@ -115,6 +115,36 @@ TEST_F(PiecesTest, GiveTheDigestOfOneMachine) {
   EXPECT_EQ(Ed3r("digest " + Run()).out, Ed3r("digest " + whole).out) << "merging again changes nothing";
 }
 
+// The C library of a processor without fused multiply-add is other code.
+TEST_F(PiecesTest, WhatIsBuiltOnOtherCodeSaysSo) {
+  const std::string other = "GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F";
+  const std::string sweep = Write(kStages), aside = (scratch_ / "aside").string();
+  for (const char* stage : {"warmup", "training"})
+    ExpectDone(Ed3r(
+        fmt::format("run {} --stage {} --out {} --cache {} --quiet", sweep, stage, Run(), Cache()), other));
+  if (Ed3r(fmt::format("run {} --stage training --out {} --cache {} --quiet", sweep, Run(), Cache()))
+          .status == 0)
+    GTEST_SKIP() << "this processor has no other library";
+  for (const auto& [stage, shard] : {std::pair("online", "1/1"), std::pair("training", "1/2")}) {
+    const CommandResult refused = Piece(sweep, stage, shard);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_TRUE(Says(refused.err, Run() + ": holds results of another recipe: the C library, which rounds "))
+        << refused.err;
+    EXPECT_TRUE(
+        Says(refused.err, "; give another --from, or --accept-mixed to build on what other code has made\n"))
+        << refused.err;
+    ExpectDone(Piece(sweep, stage, std::string(shard) + " --accept-mixed"));
+  }
+  // Networks alone carry it on, too.
+  const std::string into = fmt::format("run {} --cache {} --quiet --out {}", sweep, Cache(), aside);
+  ExpectDone(Ed3r(fmt::format("{}/t --stage training --from {} --accept-mixed", into, Run())));
+  ExpectDone(Ed3r(fmt::format("{}/q --stage online --from {}/t", into, aside)));
+  for (const std::string& dir : {Run() + "/shards/online/1", aside + "/t", aside + "/q"})
+    EXPECT_TRUE(
+        Says(Ed3r("report --no-figures --no-missions " + dir).out, "pieces, MIXED CODE (--accept-mixed): "))
+        << dir;
+}
+
 // A task on a node's own disk is killed with most of what it has stored still in the journal beside its file.
 TEST_F(PiecesTest, WhatAKilledTaskHasStoredComesHomeFromItsOwnDisk) {
   const std::string sweep = Write(kStages);

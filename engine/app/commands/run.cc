@@ -78,11 +78,13 @@ bool IsPartOfTraining(const sweep::SweepPlan& plan, const Options& options, cons
          });
 }
 
-// UserError unless all is stored that the training stage learns from.
+// UserError unless all is stored that the training stage learns from. Inputs are not compared: networks know records alone.
 void CheckFoundation(const sweep::SweepPlan& plan, const Options& options) {
   store::ResultReader reader(options.from);
   if (reader.StoredRecipe().plan_text != plan.CanonicalText())
     throw UserError(fmt::format("{}: holds results of another plan; give another --from", options.from));
+  if (!options.accept_mixed)
+    schedule::RefuseOtherCode(options.from, reader.StoredRecipe().code, schedule::CodeOf(plan));
   const std::vector<sweep::RunId> stored = reader.Stored();
   for (const sweep::Stage& stage : plan.stages)
     if (stage.name == options.stage)
@@ -93,7 +95,7 @@ int TrainAPart(const sweep::SweepPlan& plan, const Options& options, const sched
   if (options.from.empty())
     throw UserError(
         "--from: is missing; a part of a training stage learns from the run that holds the warm-up");
-  // --out and --accept-mixed may be given to every part of a sweep alike.
+  // --out may be given to every part of a sweep alike.
   for (const auto& [given, option] :
        {std::pair(options.repair, "--repair"), std::pair(options.only_failed, "--only-failed"),
         std::pair(options.profile, "--profile")})
@@ -202,7 +204,7 @@ Command AddRun(Program& program) {
   parser.Flag("--only-failed", options->only_failed,
               "Fly the missions that have failed again ('ed3r status' tells why), and none that are missing");
   parser.Flag("--accept-mixed", options->accept_mixed,
-              "Continue a run that other code has begun; its report says so");
+              "Continue a run that other code has begun, or build on one (--from); its report says so");
   parser.Flag("--profile", options->profile,
               "Tell where the time went (physics, decisions, training, ...); also kept for the report");
   parser.Flag("--quiet", options->quiet, "Neither progress nor table");

@@ -38,8 +38,7 @@ void CommonRun::Add(const std::string& dir) {
   auto reader = std::make_unique<ResultReader>(dir);
   CheckHasChecksums(*reader);
   const Recipe& recipe = reader->StoredRecipe();
-  for (const auto& [subsystem, identities] : recipe.code)
-    code_[subsystem].insert(identities.begin(), identities.end());
+  Join(code_, recipe.code);
   parts_.push_back({dir, recipe.plan_text, recipe.code});
   PartPlan plan = PartPlan::kSame;
   if (latest_) plan = ComparePlans(latest_->StoredRecipe(), latest_->Layout(), *reader).plan;
