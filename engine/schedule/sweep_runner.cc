@@ -132,7 +132,7 @@ class SweepRun {
     store_ = store::ResultStore::Open(
         options.dir, with_foundation, layout_,
         {.other_code = options.accept_mixed ? store::OtherCode::kAccept : store::OtherCode::kRefuse,
-         .repair = options.repair ? store::Repair::kYes : store::Repair::kNo,
+         .repair = options.repair && FliesAll() ? store::Repair::kYes : store::Repair::kNo,
          .may_grow = !options.only_failed});
     RemoveLeftovers(options.dir);
     RemoveLeftovers(options.cache_dir);
@@ -163,12 +163,10 @@ class SweepRun {
 
  private:
   void RunStages() {
+    CheckStageIsReady();
     if (options_.only_failed) again_ = store_->Failed();
     for (std::size_t i = 0; i < plan_.stages.size() && !summary_.flown.interrupted; ++i) {
       if (!options_.stage.empty() && plan_.stages[i].name != options_.stage) continue;
-      // A stage that builds on nothing may be of a plan that has grown since the foundation was merged last.
-      if (!options_.stage.empty() && !plan_.stages[i].after.empty())
-        CheckReady(plan_, plan_.stages[i], Foundation(), FoundationDir(), options_.half_width);
       if (options_.only_failed && !AnyAgainFrom(static_cast<int>(i))) break;
       if (!Ready(plan_.stages[i])) {
         summary_.waiting_stage = plan_.stages[i].name;
@@ -179,6 +177,30 @@ class SweepRun {
     }
   }
 
+  // A stage that builds on nothing may be of a plan that has grown since the foundation was merged last.
+  void CheckStageIsReady() const {
+    for (const sweep::Stage& stage : plan_.stages)
+      if (stage.name == options_.stage && !stage.after.empty())
+        CheckReady(plan_, stage, Foundation(), FoundationDir(), options_.half_width);
+  }
+
+  bool FliesAll() const {
+    return options_.stage.empty() && options_.shard.count == 1 && !options_.only_failed;
+  }
+
+  // What only a part is flown of loses nothing else: a mission that networks have learned from would be missing unseen.
+  void CheckFliesAgain(const store::DamagedMission& damage) const {
+    const auto id = layout_.Place(damage.run, damage.mission);  // none: in no plan
+    if (FliesAll() || (id && !options_.only_failed && InShard(layout_.LinearIndex(*id), options_.shard) &&
+                       (options_.stage.empty() ||
+                        plan_.stages[static_cast<std::size_t>(id->stage)].name == options_.stage)))
+      return;
+    throw UserError(
+        fmt::format("{}: {} is damaged: {}; --repair takes out only what the same call flies again, and this "
+                    "one does not: 'ed3r run SWEEP --repair' without --stage, --shard and --only-failed does",
+                    options_.dir, damage.name, damage.what));
+  }
+
   // Nothing is built on damaged missions, and a run that ends well leaves none behind.
   void LookForDamage() {
     summary_.repaired = store_->Repaired();
@@ -186,6 +208,8 @@ class SweepRun {
     const std::vector<store::DamagedMission> damage = store_->FindDamage();
     if (damage.empty()) return;
     if (!options_.repair) throw UserError(store::DamageText(options_.dir, damage.front()));
+    std::for_each(damage.begin(), damage.end(), [&](const auto& mission) { CheckFliesAgain(mission); });
+    CheckStageIsReady();
     store_->Remove(damage);
     summary_.repaired.insert(summary_.repaired.end(), damage.begin(), damage.end());
   }

@@ -47,7 +47,7 @@ struct SweepOptions {
   std::string cache_dir;        // networks of all sweeps
   Shard shard;
   ScheduleOptions schedule;
-  bool repair = false;                       // take damaged missions out and fly them again
+  bool repair = false;                       // take damaged missions of this part out and fly them again
   bool only_failed = false;                  // fly what has failed again, and nothing that is missing
   bool profile = false;                      // look where the time goes
   bool accept_mixed = false;                 // continue what other code has begun
@@ -68,7 +68,7 @@ struct SweepSummary {
 };
 
 // Flies what is missing. The same call again continues where it stopped. Everything that is stored is compared with its
-// checksums first: UserError that names the first damaged mission, unless it may be repaired.
+// checksums first: UserError that names the first damaged mission, unless this call may repair it and flies it again.
 //
 // A task of a batch system gives `stage` and `foundation`: it flies its shard of one stage into a store of its own and
 // reads the missions and networks of the stages before from the merged run, which it does not change. Of a stage with a

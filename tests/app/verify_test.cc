@@ -132,6 +132,50 @@ TEST_F(VerifyTest, EveryCommandRefusesADamagedMissionAndARepairFliesItAgain) {
   EXPECT_EQ(Ed3r("verify " + dir).status, 0);
 }
 
+// What is not flown again by the same call stays where it is.
+TEST(RepairTest, APartTakesNothingElseOut) {
+  const ScratchFolder scratch;
+  const std::string sweep = (scratch / "two.yaml").string(), run = (scratch / "run").string();
+  std::ofstream(sweep) << "base: " << kRbs
+                       << "\nname: two\nmissions: 4\nstages:\n  - {name: first}\n  - {name: second, after: "
+                          "first, set: {robot.speed_mps: 4}}\n";
+  const std::string fly = fmt::format("run {} --out {} ", sweep, run);
+  ASSERT_EQ(Ed3r(fly).status, 0);
+  const std::string whole = Ed3r("digest " + run).out;
+  Sql(scratch / "run", "UPDATE missions SET total_j = 1 WHERE run = 0 AND mission = 2");
+  for (const char* part : {"--stage second", "--only-failed", "--shard 2/2", "--stage first --shard 2/2"}) {
+    const CommandResult refused = Ed3r(fly + "--repair " + part);
+    EXPECT_EQ(refused.status, 2) << part;
+    EXPECT_EQ(refused.err,
+              run +
+                  ": stage first, arm rbs, mission 2 is damaged: its record does not match its checksum; "
+                  "--repair takes out only what the same call flies again, and this one does not: 'ed3r run "
+                  "SWEEP --repair' without --stage, --shard and --only-failed does\n");
+    EXPECT_TRUE(Contains(Ed3r("verify " + run).out, "stage first, arm rbs, mission 2: ")) << part;
+  }
+  const CommandResult grown = Ed3r(fly + "--repair --missions first=5 --stage second");
+  EXPECT_EQ(grown.status, 2);
+  EXPECT_TRUE(Contains(grown.err, "stage first, arm rbs, mission 2 is damaged: ")) << grown.err;
+  EXPECT_TRUE(Contains(Ed3r("verify " + run).out, "stage first, arm rbs, mission 2: "));
+
+  // A stage that is refused for another reason has lost nothing.
+  Sql(scratch / "run", "UPDATE missions SET total_j = 1 WHERE run = 1 AND mission = 3");
+  ASSERT_EQ(Ed3r(fly + "--repair").status, 0);
+  EXPECT_EQ(Ed3r("digest " + run).out, whole);
+  Sql(scratch / "run", "DELETE FROM missions WHERE run = 0 AND mission = 1");
+  Sql(scratch / "run", "DELETE FROM timesteps WHERE run = 0 AND mission = 1");
+  Sql(scratch / "run", "UPDATE missions SET total_j = 1 WHERE run = 1 AND mission = 3");
+  EXPECT_TRUE(Contains(Ed3r(fly + "--repair --stage second").err, "1 missions are missing or failed"));
+  EXPECT_TRUE(Contains(Ed3r("verify " + run).out, "stage second, arm rbs, mission 3: "));
+
+  ASSERT_EQ(Ed3r(fly + "--repair --stage first --shard 2/2").status, 2);
+  ASSERT_EQ(Ed3r(fly + "--repair").status, 0);
+  EXPECT_EQ(Ed3r("digest " + run).out, whole);
+  Sql(scratch / "run", "UPDATE missions SET total_j = 1 WHERE run = 1 AND mission = 3");
+  EXPECT_TRUE(Contains(Ed3r(fly + "--repair --stage second").out, "repaired: stage second, arm "));
+  EXPECT_EQ(Ed3r("digest " + run).out, whole);
+}
+
 TEST_F(VerifyTest, ARunThatWasFoundCompleteIsComparedAgain) {
   ASSERT_EQ(Ed3r(FlyRbs(Run())).status, 0);  // remembered as complete
   Rot(Run());
