@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "engine/app/commands.h"
@@ -30,39 +28,18 @@ const sweep::Stage& FindStage(const sweep::SweepPlan& plan, const std::string& d
                               DidYouMean(name, names)));
 }
 
-// Of the missions that the stores hold together, in plan order.
-struct Together {
-  std::vector<sweep::RunId> stored, failed;
-};
-
-Together ReadTogether(const store::ResultReader& first, const std::vector<std::string>& stores) {
-  std::set<sweep::RunId> stored, failed;
-  for (const std::string& dir : stores) {
-    store::ResultReader reader(dir);
-    if (const auto difference = store::Difference(first.StoredRecipe(), reader.StoredRecipe()))
-      throw UserError(
-          fmt::format("{}: holds results of another recipe than {}: {}", dir, first.dir(), *difference));
-    const std::vector<sweep::RunId> here = reader.Stored();
-    stored.insert(here.begin(), here.end());
-    for (const store::FailedMission& failure : reader.Failures()) failed.insert(failure.id);
-  }
-  std::erase_if(failed, [&](const sweep::RunId& id) { return stored.contains(id); });
-  return {{stored.begin(), stored.end()}, {failed.begin(), failed.end()}};
-}
-
-// With a precision there is one store: intervals are over all that is stored.
-int Tell(const sweep::SweepPlan& plan, const sweep::Stage& stage, const store::ResultReader& first,
-         const std::vector<std::string>& stores) {
-  const Together together = ReadTogether(first, stores);
+int Tell(const sweep::SweepPlan& plan, const sweep::Stage& stage, store::ResultReader& run) {
   const schedule::StageProgress progress =
-      schedule::ProgressOf(plan, stage.name, together.stored, stores.front(), report::HalfWidth);
+      schedule::ProgressOf(plan, stage.name, run.Stored(), run.dir(), report::HalfWidth);
   if (progress.open.empty()) {
     fmt::print("stage {}: finished\n", stage.name);
     return kDone;
   }
+  const std::vector<store::FailedMission> failures = run.Failures();
   const auto failed =
-      std::count_if(together.failed.begin(), together.failed.end(), [&](const sweep::RunId& id) {
-        return plan.stages[static_cast<std::size_t>(id.stage)].name == stage.name && progress.Asks(id);
+      std::count_if(failures.begin(), failures.end(), [&](const store::FailedMission& failure) {
+        return plan.stages[static_cast<std::size_t>(failure.id.stage)].name == stage.name &&
+               progress.Asks(failure.id);
       });
   fmt::print("stage {}: {} missing, {} failed, up to mission {} of {}\n", stage.name,
              Counted(progress.missing - failed, "mission"), failed, progress.upto,
@@ -73,16 +50,12 @@ int Tell(const sweep::SweepPlan& plan, const sweep::Stage& stage, const store::R
 }  // namespace
 
 int TellStage(const std::string& dir, const std::string& name) {
-  store::AddingStores found = store::StoresThatAdd(dir);
-  TellNotes(found.notes);
-  const std::vector<std::string> stores = found.dirs.empty() ? std::vector{dir} : std::move(found.dirs);
-  const store::ResultReader first(stores.front());
-  const sweep::SweepPlan plan =
-      sweep::PlanOf(sweep::ReadPlanText(first.StoredRecipe().plan_text), stores.front());
-  const sweep::Stage& stage = FindStage(plan, dir, name);
-  if (!stage.precision || stores.size() == 1) return Tell(plan, stage, first, stores);
   const store::GatheredShards gathered(dir);
-  return Tell(plan, stage, first, {gathered.dir()});
+  TellNotes(gathered.notes());
+  store::ResultReader run(gathered.dir());
+  const sweep::SweepPlan plan = sweep::PlanOf(sweep::ReadPlanText(run.StoredRecipe().plan_text), dir);
+  const sweep::Stage& stage = FindStage(plan, dir, name);
+  return Tell(plan, stage, run);
 }
 
 }  // namespace ed3r::app

@@ -291,6 +291,17 @@ TEST_F(PiecesTest, PartsThatAreNotMergedCountEverywhere) {
   EXPECT_TRUE(Says(watched.out, "half: 4 of 4 missions, nothing missing")) << watched.out;
 }
 
+TEST_F(PiecesTest, PartsOfAnEarlierPlanCountForTheirStage) {
+  const std::string sweep = Write("name: earlier\nmissions: 10\nset: {strategy: rbs, " + kWorld + "}");
+  for (const char* shard : {"1/2", "2/2"}) ExpectDone(Piece(sweep, "online", shard));
+  ExpectDone(Ed3r(fmt::format("run {} --missions 20 --shard 1/4 --quiet --out {}", sweep, Run())));
+  const auto arm = nlohmann::json::parse(Ed3r("status --json " + Run()).out)["arms"][0];
+  const CommandResult told = Ed3r("status --stage online " + Run());
+  EXPECT_EQ(told.status, 3) << told.err;
+  EXPECT_EQ(told.out, fmt::format("stage online: {} missions missing, 0 failed, up to mission 20 of 1 arm\n",
+                                  arm["missing"].get<int>()));
+}
+
 // A run that is complete, beside parts of a plan that has grown since.
 TEST_F(PiecesTest, PartsOfAGrownPlanAreNotLeftOutInSilence) {
   const std::string sweep = Write("name: grows\nmissions: 4\nset: {strategy: rbs, " + kWorld + "}");
