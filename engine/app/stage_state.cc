@@ -10,6 +10,7 @@
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/schedule/progress_of_stage.h"
+#include "engine/schedule/training_stage.h"
 #include "engine/store/reader.h"
 #include "engine/store/shards/gathered_shards.h"
 #include "engine/sweep/plan_text.h"
@@ -28,7 +29,17 @@ const sweep::Stage& FindStage(const sweep::SweepPlan& plan, const std::string& d
                               DidYouMean(name, names)));
 }
 
-int Tell(const sweep::SweepPlan& plan, const sweep::Stage& stage, store::ResultReader& run) {
+// Networks that lie in the cache alone are not counted: what flies next takes them from the run.
+int TellTraining(const sweep::SweepPlan& plan, const std::string& stage, store::ResultReader& run) {
+  const std::int64_t untrained = schedule::CountUntrained(plan, stage, run.Networks().uses);
+  if (untrained == 0)
+    fmt::print("stage {}: finished\n", stage);
+  else
+    fmt::print("stage {}: not trained, networks of {} are missing\n", stage, Counted(untrained, "arm"));
+  return untrained == 0 ? kDone : kMissionsFailed;
+}
+
+int TellFlights(const sweep::SweepPlan& plan, const sweep::Stage& stage, store::ResultReader& run) {
   const schedule::StageProgress progress =
       schedule::ProgressOf(plan, stage.name, run.Stored(), run.dir(), report::HalfWidth);
   if (progress.open.empty()) {
@@ -55,7 +66,8 @@ int TellStage(const std::string& dir, const std::string& name) {
   store::ResultReader run(gathered.dir());
   const sweep::SweepPlan plan = sweep::PlanOf(sweep::ReadPlanText(run.StoredRecipe().plan_text), dir);
   const sweep::Stage& stage = FindStage(plan, dir, name);
-  return Tell(plan, stage, run);
+  return stage.kind == sweep::StageKind::kTrain ? TellTraining(plan, stage.name, run)
+                                                : TellFlights(plan, stage, run);
 }
 
 }  // namespace ed3r::app

@@ -65,6 +65,20 @@ Samples ReadSamples(store::ResultReader& reader, const sweep::SweepPlan& plan, c
   return samples;
 }
 
+// Calls `visit` with stage, arm and warm-up of every arm that learns in this training stage; "" in any.
+template <class Visit>
+void ForEachLearner(const sweep::SweepPlan& plan, const std::string& training, const Visit& visit) {
+  for (std::size_t s = 0; s < plan.stages.size(); ++s) {
+    const sweep::Stage& stage = plan.stages[s];
+    for (std::size_t a = 0; a < stage.arms.size(); ++a) {
+      if (stage.kind != sweep::StageKind::kFly || !NeedsTraining(stage.arms[a].config)) continue;
+      const WarmupChoice choice = ChooseWarmup(plan, stage, stage.arms[a]);
+      if (!training.empty() && !choice.trainings.contains(training)) continue;
+      visit(static_cast<int>(s), static_cast<int>(a), choice);
+    }
+  }
+}
+
 }  // namespace
 
 agents::Networks NetworkShelf::For(const sweep::RunId& id, int places) const {
@@ -237,26 +251,20 @@ std::size_t TrainingStage::AddJob(const rfnn::NetworkDesign& design, const rfnn:
 }
 
 void TrainingStage::Collect() {
-  for (std::size_t s = 0; s < plan_.stages.size(); ++s) {
-    const sweep::Stage& stage = plan_.stages[s];
-    for (std::size_t a = 0; a < stage.arms.size(); ++a) {
-      const sweep::Arm& arm = stage.arms[a];
-      if (stage.kind != sweep::StageKind::kFly || !NeedsTraining(arm.config)) continue;
-      const std::string_view source = agents::FindStrategy(arm.config.mission.strategy).networks;
-      const WarmupChoice choice = ChooseWarmup(plan_, stage, arm);
-      if (!options_.stage.empty() && !choice.trainings.contains(options_.stage)) continue;
-      ArmNeed need{static_cast<int>(s), static_cast<int>(a), {}, {}};
-      for (int seed = 0; seed < arm.config.training.seeds; ++seed) {
-        const Samples& samples =
-            SamplesFor(PartOf(plan_, choice, arm.config.training, seed), arm.config.agents);
-        if (NeedsRc(arm.config))
-          need.rc_jobs.push_back(AddJob(rfnn::kRcNetwork, samples.rc, arm, source, seed));
-        if (NeedsRobot(arm.config))
-          need.robot_jobs.push_back(AddJob(rfnn::kRobotNetwork, samples.robot, arm, source, seed));
-      }
-      needs_.push_back(std::move(need));
+  ForEachLearner(plan_, options_.stage, [&](int s, int a, const WarmupChoice& choice) {
+    const sweep::Arm& arm = plan_.stages[static_cast<std::size_t>(s)].arms[static_cast<std::size_t>(a)];
+    const std::string_view source = agents::FindStrategy(arm.config.mission.strategy).networks;
+    ArmNeed need{s, a, {}, {}};
+    for (int seed = 0; seed < arm.config.training.seeds; ++seed) {
+      const Samples& samples =
+          SamplesFor(PartOf(plan_, choice, arm.config.training, seed), arm.config.agents);
+      if (NeedsRc(arm.config))
+        need.rc_jobs.push_back(AddJob(rfnn::kRcNetwork, samples.rc, arm, source, seed));
+      if (NeedsRobot(arm.config))
+        need.robot_jobs.push_back(AddJob(rfnn::kRobotNetwork, samples.robot, arm, source, seed));
     }
-  }
+    needs_.push_back(std::move(need));
+  });
 }
 
 std::vector<std::shared_ptr<const rfnn::Model>> TrainingStage::Train(const std::vector<rfnn::TrainJob>& jobs,
@@ -320,6 +328,17 @@ std::vector<ShelvedNetwork> TrainingStage::RunPart(const Shard& part) {
 
 std::unique_ptr<NetworkShelf> TrainNetworks(const sweep::SweepPlan& plan, const TrainingOptions& options) {
   return TrainingStage(plan, options).Run();
+}
+
+std::int64_t CountUntrained(const sweep::SweepPlan& plan, const std::string& training,
+                            const std::vector<store::NetworkUse>& uses) {
+  std::int64_t untrained = 0;
+  ForEachLearner(plan, training, [&](int stage, int arm, const WarmupChoice&) {
+    if (std::none_of(uses.begin(), uses.end(),
+                     [&](const store::NetworkUse& use) { return use.stage == stage && use.arm == arm; }))
+      ++untrained;
+  });
+  return untrained;
 }
 
 std::int64_t CountNetworks(const sweep::SweepPlan& plan) {

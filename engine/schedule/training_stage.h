@@ -84,6 +84,10 @@ void CheckTraining(const sweep::SweepPlan& plan);
 // a run that has flown.
 std::unique_ptr<NetworkShelf> TrainNetworks(const sweep::SweepPlan& plan, const TrainingOptions& options);
 
+// Of the arms that learn in the training stage of this name: how many have no network among `uses`. 0 when it is done.
+std::int64_t CountUntrained(const sweep::SweepPlan& plan, const std::string& training,
+                            const std::vector<store::NetworkUse>& uses);
+
 // How many networks TrainNetworks() would train where the cache holds none. Reads nothing.
 std::int64_t CountNetworks(const sweep::SweepPlan& plan);
 

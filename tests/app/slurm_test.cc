@@ -78,6 +78,9 @@ TEST_F(PiecesTest, GiveTheDigestOfOneMachine) {
   Merge("warmup");
   EXPECT_EQ(Ed3r("status --stage warmup " + Run()).status, 0);
   EXPECT_EQ(Ed3r("status --stage online " + Run()).status, 3);
+  const CommandResult untrained = Ed3r("status --stage training " + Run());
+  EXPECT_EQ(untrained.status, 3);
+  EXPECT_EQ(untrained.out, "stage training: not trained, networks of 1 arm are missing\n");
 
   EXPECT_TRUE(Says(Missing(sweep), "step 3-training on, 2 of its 2 tasks: 1-2")) << Missing(sweep);
   EXPECT_EQ(Piece(sweep, "online", "1/2").status, 2) << "no networks yet";
@@ -86,7 +89,9 @@ TEST_F(PiecesTest, GiveTheDigestOfOneMachine) {
   EXPECT_TRUE(Says(Missing(sweep), "step 3-training on, 1 of its 2 tasks: 2")) << Missing(sweep);
   ExpectDone(Piece(sweep, "training", "2/2"));
   EXPECT_TRUE(Says(Missing(sweep), "step 4-training-collect on")) << Missing(sweep);
+  EXPECT_EQ(Ed3r("status --stage training " + Run()).status, 3) << "in the cache alone";
   ExpectDone(Ed3r(fmt::format("run {} --stage training --out {} --cache {} --quiet", sweep, Run(), Cache())));
+  EXPECT_EQ(Ed3r("status --stage training " + Run()).out, "stage training: finished\n");
 
   ExpectDone(Piece(sweep, "online", "1/2"));
   const CommandResult of_part = Ed3r("digest " + Run());
@@ -113,6 +118,36 @@ TEST_F(PiecesTest, GiveTheDigestOfOneMachine) {
   EXPECT_TRUE(Says(Missing(sweep), "nothing is owed")) << Missing(sweep);
   Merge("online");
   EXPECT_EQ(Ed3r("digest " + Run()).out, Ed3r("digest " + whole).out) << "merging again changes nothing";
+}
+
+TEST_F(PiecesTest, EachTrainingOwesTheNetworksOfItsOwnLearners) {
+  const std::string sweep =
+      Write("name: both\nseed: 3\nmissions: 6\nset: {training.epochs: 2, training.batch: 32, " + kWorld + R"(}
+stages:
+  - {name: wa, set: {strategy: random}}
+  - {name: ta, kind: train, after: wa}
+  - {name: oa, after: ta, set: {strategy: ed3r}}
+  - {name: wb, after: oa, set: {strategy: random-offload}}
+  - {name: tb, kind: train, after: wb}
+  - {name: ob, after: tb, set: {strategy: ecd2r}}
+)");
+  ExpectDone(Ed3r(fmt::format("slurm {} --shards 2 --out {} --cache {}", sweep, Run(), Cache())));
+  const auto fly = [&](const std::string& stage) {
+    ExpectDone(
+        Ed3r(fmt::format("run {} --stage {} --out {} --cache {} --quiet", sweep, stage, Run(), Cache())));
+  };
+  fly("wa");
+  EXPECT_TRUE(Says(Missing(sweep), "step 3-ta on, 2 of its 3 tasks: 1,3")) << Missing(sweep);
+  ExpectDone(Piece(sweep, "ta", "3/3"));
+  EXPECT_TRUE(Says(Missing(sweep), "step 3-ta on, 1 of its 3 tasks: 1")) << Missing(sweep);
+  ExpectDone(Piece(sweep, "ta", "1/3"));
+  EXPECT_TRUE(Says(Missing(sweep), "step 4-ta-collect on\n")) << Missing(sweep);
+  for (const char* stage : {"ta", "oa", "wb"}) fly(stage);
+  EXPECT_TRUE(Says(Missing(sweep), "step 9-tb on, 1 of its 3 tasks: 3")) << Missing(sweep);
+  EXPECT_EQ(Ed3r("status --stage ta " + Run()).status, 0);
+  EXPECT_EQ(Ed3r("status --stage tb " + Run()).status, 3);
+  fly("tb");
+  EXPECT_TRUE(Says(Missing(sweep), "step 11-ob on, 2 of its 2 tasks: 1-2")) << Missing(sweep);
 }
 
 // The C library of a processor without fused multiply-add is other code.

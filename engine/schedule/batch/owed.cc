@@ -31,7 +31,7 @@ class Books {
     store::ResultReader reader(run_dir);
     CheckPlan(reader);
     merged_ = reader.Stored();
-    has_networks_ = !reader.Networks().uses.empty();
+    networks_ = reader.Networks().uses;
   }
 
   // The flights of a stage: their tasks, or the merge where all is flown. False when it is finished.
@@ -52,9 +52,9 @@ class Books {
   }
 
   bool Trainings(const BatchStep& step, int number, Owed& owed) const {
-    if (has_networks_) return false;
+    if (CountUntrained(plan_, step.stage, networks_) == 0) return false;
     TrainingOptions options;
-    options.run_dir = run_dir_, options.cache_dir = cache_dir_;
+    options.stage = step.stage, options.run_dir = run_dir_, options.cache_dir = cache_dir_;
     const std::vector<bool> cached = NetworksInCache(plan_, options);
     for (std::size_t i = 0; i < cached.size(); ++i)
       if (!cached[i]) owed.tasks.push_back(TaskOf(static_cast<std::int64_t>(i), step.tasks));
@@ -109,7 +109,7 @@ class Books {
   const std::string &run_dir_, &cache_dir_;
   const HalfWidthFn& half_width_;
   std::vector<sweep::RunId> merged_;
-  bool has_networks_ = false;
+  std::vector<store::NetworkUse> networks_;
 };
 
 }  // namespace
