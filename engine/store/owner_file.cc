@@ -10,9 +10,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <random>
 #include <sstream>
+#include <system_error>
 
 #include "engine/core/check.h"
 #include "engine/core/threads.h"
@@ -34,11 +36,30 @@ std::string JobName() {
   return "-";
 }
 
+// How often the batch system has started that task again. Only Slurm tells.
+std::string JobStart() {
+  const char* restarts = std::getenv("SLURM_RESTART_COUNT");
+  return restarts != nullptr && *restarts != '\0' ? restarts : "0";
+}
+
+// Where a process number means one process: this boot of this kernel and, as containers count their own, this PID
+// namespace. "" where the system does not tell.
+std::string ProcessNumbers() {
+  std::string boot;
+  std::ifstream("/proc/sys/kernel/random/boot_id") >> boot;
+  std::error_code error;
+  const fs::path space = fs::read_symlink("/proc/self/ns/pid", error);
+  return boot.empty() || error ? "" : fmt::format("{}/{}", boot, space.string());
+}
+
 struct Owner {
   std::string host, job, token;
   pid_t process = 0;
+  std::string start, numbers;  // "" in files of before
 
-  std::string Text() const { return fmt::format("{} {} {} {}\n", host, process, job, token); }
+  std::string Text() const {
+    return fmt::format("{} {} {} {} {} {}\n", host, process, job, token, start, numbers);
+  }
   std::string Name() const {
     return fmt::format("process {} on {}{}", process, host, job == "-" ? "" : ", job " + job);
   }
@@ -46,7 +67,8 @@ struct Owner {
 
 Owner ThisOwner() {
   std::random_device random;  // only to tell two owners apart
-  return {HostName(), JobName(), fmt::format("{:08x}{:08x}", random(), random()), getpid()};
+  return {HostName(), JobName(),  fmt::format("{:08x}{:08x}", random(), random()),
+          getpid(),   JobStart(), ProcessNumbers()};
 }
 
 std::string Content(const std::string& path) {
@@ -62,7 +84,9 @@ std::optional<Owner> Parse(const std::string& text) {
   std::istringstream words(text);
   Owner owner;
   words >> owner.host >> owner.process >> owner.job >> owner.token;
-  return words && owner.process > 0 ? std::optional(owner) : std::nullopt;
+  if (!words || owner.process <= 0) return std::nullopt;
+  words >> owner.start >> owner.numbers;
+  return owner;
 }
 
 // Exclusively: false when the file is there already.
@@ -89,8 +113,11 @@ double Age_s(const std::string& path, const std::string& beside) {
 }
 
 bool IsGone(const Owner& owner, const Owner& self, const std::string& path) {
-  if (owner.host == self.host && kill(owner.process, 0) != 0 && errno == ESRCH) return true;
-  if (owner.host != self.host && owner.job != "-" && owner.job == self.job) return true;
+  const bool same_numbers = owner.host == self.host && owner.numbers == self.numbers && !self.numbers.empty();
+  if (same_numbers && kill(owner.process, 0) != 0 && errno == ESRCH) return true;
+  // Started again, the job's processes of before are gone. One start may have processes on several machines.
+  const bool same_job = owner.job == self.job && self.job != "-";
+  if (same_job && owner.start != self.start && !owner.start.empty()) return true;
   return Age_s(path, path + "." + self.token) > static_cast<double>(kOwnerStale.count());
 }
 

@@ -2,8 +2,9 @@
 // file RUN/results.owner that names the writer, made exclusively (atomic on NFS too) and removed at the end.
 //
 // A writer that was killed leaves it behind. The next one takes over when it can know that the first is gone: the same
-// machine has no such process any more, the batch system runs the same job again, or the file has not been renewed for
-// kOwnerStale (a thread renews it while the writer lives; ages are told by the clock of the file server).
+// machine (and container) has no such process any more, the batch system has started the same job again (Slurm counts
+// that), or the file has not been renewed for kOwnerStale (a thread renews it while the writer lives; ages are told by the
+// clock of the file server).
 //
 // Should two writers ever meet in spite of this, the results stay right: a mission is a pure function of its number, and
 // what they damage in the file is found by its checksums and refused.

@@ -101,18 +101,54 @@ TEST(OwnerFileTest, IsTakenOverOnlyFromAnOwnerThatIsGone) {
   EXPECT_FALSE(std::filesystem::exists(file));
 
   const auto left_by = [&](const std::string& text) { std::ofstream(file) << text; };
-  left_by("elsewhere 12 4711 token\n");
-  EXPECT_EQ(store::OwnerFile::TryTake(dir, owner), nullptr) << "nobody knows whether it lives";
-  EXPECT_EQ(owner, "process 12 on elsewhere, job 4711");
-  setenv("SLURM_JOB_ID", "4711", 1);
-  EXPECT_NE(store::OwnerFile::TryTake(dir, owner), nullptr) << "the same job runs again";
-  unsetenv("SLURM_JOB_ID");
-
   left_by("elsewhere 12 - token\n");
   const auto now = std::filesystem::last_write_time(file);
   std::filesystem::last_write_time(file, now - store::kOwnerStale - std::chrono::seconds(5));
   EXPECT_NE(store::OwnerFile::TryTake(dir, owner), nullptr) << "not renewed for long";
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir), {}), 0) << "nothing is left behind";
+}
+
+// Whether a directory whose owner file holds these words has a writer that may be alive.
+bool MayBeAlive(const std::string& dir, const std::string& words, std::string& owner) {
+  std::ofstream(dir + "/" + store::kOwnerFile) << words << "\n";
+  return store::OwnerFile::TryTake(dir, owner) == nullptr;
+}
+
+TEST(OwnerFileTest, AProcessNumberIsBelievedOnlyWhereItIsCountedAlike) {
+  const store::TempDir temp;
+  const std::string dir = temp / "run";
+  std::filesystem::create_directories(dir);
+  std::string owner, host, process, job, token, start, numbers;
+  {
+    const auto mine = store::OwnerFile::TryTake(dir, owner);
+    std::ifstream(dir + "/" + store::kOwnerFile) >> host >> process >> job >> token >> start >> numbers;
+  }
+  ASSERT_TRUE(store::Contains(numbers, "/pid:["));
+  const std::string gone = fmt::format("{} {} - token", host, 1 << 30);  // no kernel counts so far
+  EXPECT_FALSE(MayBeAlive(dir, fmt::format("{} 0 {}", gone, numbers), owner));
+  EXPECT_TRUE(MayBeAlive(dir, fmt::format("{} 0 {}0", gone, numbers), owner)) << "another container";
+  EXPECT_TRUE(MayBeAlive(dir, fmt::format("{} 0 0{}", gone, numbers), owner))
+      << "another machine of that name";
+  EXPECT_TRUE(MayBeAlive(dir, gone, owner)) << "of an earlier program, which did not say";
+  EXPECT_EQ(owner, fmt::format("process {} on {}", 1 << 30, host));
+  EXPECT_TRUE(MayBeAlive(dir, fmt::format("{} {} - token 0 {}", host, getpid(), numbers), owner));
+}
+
+TEST(OwnerFileTest, AJobThatIsStartedAgainTakesOverAndAnotherTaskOfItsStartDoesNot) {
+  const store::TempDir temp;
+  std::filesystem::create_directories(temp / "run");
+  std::string owner;
+  EXPECT_TRUE(MayBeAlive(temp / "run", "elsewhere 12 4711 token 0 boot/pid:[1]", owner));
+  EXPECT_EQ(owner, "process 12 on elsewhere, job 4711");
+  setenv("SLURM_JOB_ID", "4711", 1);
+  EXPECT_TRUE(MayBeAlive(temp / "run", "elsewhere 12 4711 token 0 boot/pid:[1]", owner))
+      << "two tasks of one srun";
+  EXPECT_TRUE(MayBeAlive(temp / "run", "elsewhere 12 4711 token", owner)) << "of an earlier program";
+  setenv("SLURM_RESTART_COUNT", "1", 1);
+  EXPECT_TRUE(MayBeAlive(temp / "run", "elsewhere 12 4712 token 0 boot/pid:[1]", owner)) << "another job";
+  EXPECT_FALSE(MayBeAlive(temp / "run", "elsewhere 12 4711 token 0 boot/pid:[1]", owner));
+  unsetenv("SLURM_RESTART_COUNT");
+  unsetenv("SLURM_JOB_ID");
 }
 
 }  // namespace
