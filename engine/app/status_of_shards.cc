@@ -14,6 +14,7 @@
 #include "engine/app/commands.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
+#include "engine/core/json_text.h"
 #include "engine/store/schema.h"
 #include "engine/store/shards/shards.h"
 #include "engine/store/sqlite.h"
@@ -82,7 +83,7 @@ void PrintJson(const Found& found) {
   object["unreadable"] = nlohmann::ordered_json::array();
   for (const auto& [store, why] : found.unreadable)
     object["unreadable"].push_back({{"store", store}, {"why", why}});
-  fmt::print("{}\n", object.dump(2));
+  fmt::print("{}\n", JsonText(object));
 }
 
 void PrintText(const Found& found) {

@@ -246,6 +246,8 @@ void Statement::Bind(int parameter, double value) {
 }
 
 void Statement::Bind(int parameter, std::string_view value) {
+  // A host or a path of the system may be called anything; as it is, readers would take it for damage.
+  if (!IsUtf8(value)) return Bind(parameter, std::string_view(AsUtf8(value)));
   if (sqlite3_bind_text64(statement_.get(), parameter + 1, value.data(), value.size(), SQLITE_TRANSIENT,
                           SQLITE_UTF8) != SQLITE_OK)
     connection_.Fail();

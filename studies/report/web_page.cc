@@ -6,6 +6,7 @@
 
 #include "engine/core/files/file.h"
 #include "engine/core/files/shipped.h"
+#include "engine/core/json_text.h"
 #include "studies/report/page_parts.h"
 
 namespace ed3r::report {
@@ -59,7 +60,7 @@ std::string SelfContainedPage(const std::string& title, const WebBundle& bundle,
   page += "</style>\n</head>\n<body>\n<div id=\"app\"></div>\n<noscript>";
   page += plain;
   page += "</noscript>\n<script type=\"application/json\" id=\"page-data\">";
-  page += ScriptSafe(data.dump());
+  page += ScriptSafe(JsonText(data, -1));
   page += "</script>\n<script>";
   page += bundle.script;
   return page + "</script>\n</body>\n</html>\n";

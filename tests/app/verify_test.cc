@@ -223,6 +223,21 @@ TEST_F(VerifyTest, ADamagedShardBesideACompleteRunIsNamedByVerifyAlone) {
   EXPECT_TRUE(Contains(verified.out, shard.string() + ": ")) << verified.out;
 }
 
+TEST_F(VerifyTest, NamesThatAreNotUtf8HaveTheirPlaceInJson) {
+  const fs::path shards = Run() / "shards/online", shard = shards / "1\xff";
+  fs::create_directories(shard);
+  std::ofstream(shard / "results.sqlite") << "no database";
+  const std::string dir = Run().string(), named = (shards / "1\ufffd").string();
+  EXPECT_EQ(json::parse(Ed3r("status --json " + dir).out)["unreadable"][0]["store"], named);
+  EXPECT_EQ(json::parse(Ed3r("verify --json " + dir).out)["other"][0],
+            named + "/results.sqlite: not a results file (file is not a database)");
+  const std::string sweeps = "ED3R_SWEEPS=" + shard.string();
+  EXPECT_EQ(json::parse(Ed3r("doctor --json", sweeps).out)["machine"]["shipped sweeps"], named);
+  fs::copy(Run() / "results.sqlite", shard, fs::copy_options::overwrite_existing);
+  const std::string here = fmt::format("cd {} &&", shard.string());
+  EXPECT_EQ(json::parse(Ed3r("compare --json . ../../..", here).out)["runs"][0], "1\ufffd");
+}
+
 TEST_F(VerifyTest, StatusNamesAMissionThatIsNotPlanned) {
   Sql(Run(), "UPDATE missions SET mission = 9 WHERE mission = 3");
   const CommandResult status = Ed3r("status " + Run().string());

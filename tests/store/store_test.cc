@@ -190,6 +190,16 @@ TEST(StoreTest, RecipeAndSessionsAreInTheFile) {
   EXPECT_EQ(sessions[1].process, getpid());
 }
 
+// As a machine's name or a folder of the environment may be.
+TEST(StoreTest, ATextThatIsNotUtf8CanBeReadAgain) {
+  const TempDir temp;
+  Recipe recipe = TestRecipe();
+  recipe.notes["shipped sweeps"] = "/n\xfcrnberg/\xc3\xa9\xc3/\xff";
+  ResultStore::Open(temp / "run", recipe, TestLayout())->Commit();
+  EXPECT_EQ(ResultReader(temp / "run").Sessions().at(0).notes.at("shipped sweeps"),
+            "/n\\xfcrnberg/\xc3\xa9\\xc3/\\xff");
+}
+
 TEST(StoreTest, ASecondWriterIsRefused) {
   const TempDir temp;
   {

@@ -14,6 +14,7 @@
 #include "engine/core/check.h"
 #include "engine/core/files/file.h"
 #include "engine/core/files/remove_file.h"
+#include "engine/core/json_text.h"
 #include "engine/store/directory_lock.h"
 #include "engine/store/reader.h"
 #include "engine/store/shards/gathered_shards.h"
@@ -146,7 +147,7 @@ void WriteFolder(const std::string& text, const std::vector<report::ComparedRun>
   files.Add(out / "compare.txt", text);
   files.Add(out / "differences.csv", variants::DifferenceCsv(study));
   files.Add(out / "verdicts.csv", variants::VariantVerdictCsv(study));
-  files.Add(out / "manifest.json", ManifestOf(runs).dump(2) + "\n");
+  files.Add(out / "manifest.json", JsonText(ManifestOf(runs)) + "\n");
   files.Commit();
   WritePage(runs, study, notes, options);
 }
@@ -199,7 +200,7 @@ int Compare(const Options& options) {
   notes.insert(notes.begin(), other_contents.begin(), other_contents.end());
   const std::string text = Wrapped(notes) + variants::VariantText(study);
   if (!options.out.empty()) WriteFolder(text, runs, study, notes, options);
-  fmt::print("{}", options.json ? JsonOf(study, departure_lines, other_contents).dump(2) + "\n" : text);
+  fmt::print("{}", options.json ? JsonText(JsonOf(study, departure_lines, other_contents)) + "\n" : text);
   FlushOutput();
   TellNotes(shard_notes);
   if (const std::string& why = runs.front().scene.why_not; !why.empty())

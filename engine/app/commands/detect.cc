@@ -13,6 +13,7 @@
 #include "engine/app/words.h"
 #include "engine/core/check.h"
 #include "engine/core/files/file.h"
+#include "engine/core/json_text.h"
 #include "engine/core/message.h"
 #include "engine/perception/vision/frame_detector.h"
 #include "studies/detection/difference.h"
@@ -177,7 +178,7 @@ int Evaluate(const Options& options, const DetectorConfig& config,
     }
   if (options.json) {
     json["difference"] = json["all"]["all"]["difference"] = JsonOf(difference);
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", JsonText(json));
   } else {
     Print(difference);
   }
@@ -210,7 +211,7 @@ class PictureTable {
 
   int Finish(const detection::PictureList& list) const {
     // Names are bytes; what is no text among them is replaced.
-    if (in_json_) fmt::print("{}\n", json_.dump(2, ' ', false, Json::error_handler_t::replace));
+    if (in_json_) fmt::print("{}\n", JsonText(json_));
     if (list.passed_over > 0) Tell("note: {} of other kinds passed over", Counted(list.passed_over, "file"));
     if (failed_ == 0) return kDone;
     Tell("{} without a score, {} scored", Counted(failed_, "picture"), read_);

@@ -7,6 +7,7 @@
 
 #include "engine/app/commands.h"
 #include "engine/app/machine.h"
+#include "engine/core/json_text.h"
 #include "engine/core/random.h"
 #include "engine/robot/energy.h"
 #include "engine/world/geometry.h"
@@ -61,7 +62,7 @@ int Examine(bool json) {
     for (const Check& check : checks)
       object["checks"].push_back({{"name", check.name}, {"passed", check.passed}, {"detail", check.detail}});
     object["healthy"] = healthy;
-    fmt::print("{}\n", object.dump(2));
+    fmt::print("{}\n", JsonText(object));
   } else {
     for (const auto& [name, value] : machine) fmt::print("{:<16} {}\n", name, value);
     fmt::print("\n");

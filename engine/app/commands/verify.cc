@@ -10,6 +10,7 @@
 #include "engine/app/kept_inputs.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
+#include "engine/core/json_text.h"
 #include "engine/store/difference.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
@@ -83,7 +84,7 @@ int PrintVerification(const std::string& dir, const Verification& found, bool js
                                      {"other", found.other}};
     for (const auto& [store, mission] : found.damage)
       object["damaged"].push_back({{"mission", mission.name}, {"problem", mission.what}, {"store", store}});
-    fmt::print("{}\n", object.dump(2));
+    fmt::print("{}\n", JsonText(object));
     return whole ? kDone : kFailedInside;
   }
   for (const auto& [store, mission] : found.damage)
@@ -113,7 +114,7 @@ int PrintDifference(const store::RunDifference& difference, bool json) {
                          {"quantity", first->quantity},
                          {"first", first->here},
                          {"second", first->there}};
-    fmt::print("{}\n", object.dump(2));
+    fmt::print("{}\n", JsonText(object));
     return first ? kFailedInside : kDone;
   }
   if (!first) {

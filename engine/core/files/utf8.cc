@@ -1,5 +1,7 @@
 #include "engine/core/files/utf8.h"
 
+#include <fmt/format.h>
+
 namespace ed3r {
 
 std::size_t Utf8Length(std::string_view text) {
@@ -22,6 +24,19 @@ bool IsUtf8(std::string_view text) {
     text.remove_prefix(length);
   }
   return true;
+}
+
+std::string AsUtf8(std::string_view text) {
+  std::string escaped;
+  while (!text.empty()) {
+    const std::size_t length = Utf8Length(text);
+    if (length == 0)
+      escaped += fmt::format("\\x{:02x}", static_cast<unsigned char>(text.front()));
+    else
+      escaped += text.substr(0, length);
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return escaped;
 }
 
 }  // namespace ed3r

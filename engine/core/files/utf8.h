@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace ed3r {
@@ -10,5 +11,8 @@ namespace ed3r {
 std::size_t Utf8Length(std::string_view text);
 
 bool IsUtf8(std::string_view text);
+
+// The text with each byte that is no part of a character as \xff.
+std::string AsUtf8(std::string_view text);
 
 }  // namespace ed3r
