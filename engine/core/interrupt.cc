@@ -12,11 +12,12 @@
 namespace ed3r {
 namespace {
 
-constexpr std::array<int, 3> kBatchSignals = {SIGTERM, SIGHUP, SIGUSR1};
+// SIGXCPU and SIGUSR2 are Grid Engine's notices; the first is also what 'ulimit -t' sends.
+constexpr std::array<int, 5> kBatchSignals = {SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
 // Batch systems kill after their grace time, commonly from five seconds on.
 constexpr unsigned kPatience_s = 4;
 
-std::atomic<bool> interrupted{false};
+std::atomic<bool> interrupted{false}, alarm_set{false};
 std::atomic<int> first_signal{0};
 std::atomic<int> status_interrupted{0}, status_requeue{0};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
@@ -51,7 +52,8 @@ void OnInterrupt(int signal) {
 void OnBatchSignal(int signal) {
   Keep(signal);
   interrupted.store(true);
-  alarm(kPatience_s);
+  // Once: a signal that is repeated would put the end off for ever.
+  if (!alarm_set.exchange(true)) alarm(kPatience_s);
 }
 
 // What is committed is as safe as under kill -9.
@@ -95,6 +97,10 @@ const char* SignalName(int signal) {
       return "SIGHUP";
     case SIGUSR1:
       return "SIGUSR1";
+    case SIGUSR2:
+      return "SIGUSR2";
+    case SIGXCPU:
+      return "SIGXCPU";
     default:
       return "a signal";
   }

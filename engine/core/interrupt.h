@@ -1,9 +1,9 @@
 // Ctrl-C and the signals of batch systems: a flag that long work looks at, and the exception by which a mission in flight
 // gives up.
 //
-// SIGINT is a person who wants the program to end. SIGTERM, SIGHUP and SIGUSR1 are a batch system's notice (preemption, a
-// time limit, a node that goes down): the process ends within seconds, and its status says that the same command
-// continues.
+// SIGINT is a person who wants the program to end. SIGTERM, SIGHUP, SIGUSR1, SIGUSR2 and SIGXCPU are a batch system's notice
+// (preemption, a limit of time or processor time, a node that goes down): the process ends within seconds, and its status
+// says that the same command continues.
 #pragma once
 
 #include <atomic>
@@ -38,7 +38,7 @@ const char* SignalName(int signal);
 // their status, after what is temporary (core/temporary.h) is removed. SIGHUP stays ignored where it was (nohup).
 void EndOnInterrupt(EndStatus status);
 
-// The signals set the flag from now on. A second Ctrl-C ends the process at once. A batch system's signal lets the process
+// The signals set the flag from now on. A second Ctrl-C ends the process at once. A batch system's first signal lets the process
 // live for four seconds more: whatever does not look at the flag in that time is ended in its midst, as by a kill, with a
 // line and the status of EndOnInterrupt.
 void InstallInterruptHandler();

@@ -131,7 +131,7 @@ TEST(RunTest, AKillLosesLittleAndTheSameCommandContinues) {
 }
 
 TEST(RunTest, CtrlCExitsWith130AndABatchSystemsSignalWith75AndBothKeepWhatIsStored) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU}) {
     const ScratchFolder scratch;
     const int status = RunAndSignal("rbs.yaml", "2000", scratch / "run", signal, 10);
     ASSERT_TRUE(WIFEXITED(status));

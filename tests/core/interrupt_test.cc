@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -17,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kAll[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
+constexpr int kAll[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
 
 // Each test in a process of its own, because signals and the flag belong to the process.
 TEST(InterruptTest, ASignalSetsTheFlagAndASecondCtrlCEndsTheProcess) {
@@ -87,6 +88,34 @@ TEST(InterruptTest, WorkThatDoesNotLookAtTheFlagIsEndedAfterABatchSystemsSignal)
         while (true) pause();
       },
       ::testing::ExitedWithCode(75), "^ed3r: ended by SIGUSR1; the same command continues\n$");
+}
+
+TEST(InterruptTest, ASignalThatIsRepeatedPutsTheEndOffNoFurther) {
+  EXPECT_EXIT(
+      {
+        EndOnInterrupt({.interrupted = 130, .requeue = 75});
+        InstallInterruptHandler();
+        std::raise(SIGTERM);
+        alarm(1);  // what is left of the four seconds
+        for (int i = 0; i < 6; ++i) {
+          std::raise(SIGTERM);
+          usleep(500'000);
+        }
+      },
+      ::testing::ExitedWithCode(75), "^ed3r: ended by SIGTERM; the same command continues\n$");
+}
+
+TEST(InterruptTest, ALimitOfProcessorTimeIsToldLikeABatchSystemsSignal) {
+  EXPECT_EXIT(
+      {
+        EndOnInterrupt({.interrupted = 130, .requeue = 75});
+        rlimit limit = {};
+        getrlimit(RLIMIT_CPU, &limit);
+        limit.rlim_cur = 1;
+        if (setrlimit(RLIMIT_CPU, &limit) != 0) _exit(1);
+        for (volatile int i = 0;;) i = 1;
+      },
+      ::testing::ExitedWithCode(75), "^ed3r: ended by SIGXCPU; the same command continues\n$");
 }
 
 TEST(InterruptTest, UnderNohupAClosedTerminalIsNoReasonToEnd) {

@@ -32,7 +32,7 @@ TEST(ProcessTest, AKillCostsLessThanASecondAndResumesToTheSameDigest) {
 }
 
 TEST(ProcessTest, CtrlCAndABatchSystemsSignalsKeepWhatIsStored) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU}) {
     const store::TempDir temp;
     DummyRun run(temp / "run", 2, 3, temp / "log");
     WaitFor([&] { return ReadLog(temp / "log").size() > 20; });
