@@ -54,13 +54,17 @@ std::string PlaceOf(const std::string& dir) {
   return place.empty() ? dir : place;
 }
 
+std::optional<bool> SaidToBeShared() {
+  const char* said = std::getenv("ED3R_STORE");
+  if (said == nullptr || *said == '\0') return std::nullopt;
+  const std::string_view value = said;
+  if (value != "local" && value != "shared")
+    throw UserError(fmt::format("ED3R_STORE: '{}' is not allowed; allowed: local | shared", value));
+  return value == "shared";
+}
+
 bool IsSharedFileSystem(const std::string& dir) {
-  if (const char* asked = std::getenv("ED3R_STORE"); asked != nullptr && *asked != '\0') {
-    const std::string_view value = asked;
-    if (value != "local" && value != "shared")
-      throw UserError(fmt::format("ED3R_STORE: '{}' is not allowed; allowed: local | shared", value));
-    return value == "shared";
-  }
+  if (const std::optional<bool> said = SaidToBeShared()) return *said;
   struct statfs found = {};
   if (statfs(dir.c_str(), &found) != 0) throw UserError(fmt::format("{}: {}", dir, std::strerror(errno)));
   const auto type = static_cast<std::uint32_t>(found.f_type);

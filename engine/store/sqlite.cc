@@ -99,11 +99,25 @@ std::string WhyNotOpened(const std::string& file, const std::string& reason) {
 
 }  // namespace
 
+void CheckPathLength(const std::string& file) {
+  constexpr std::string_view kLongestSuffix = "-journal";
+  const auto most = static_cast<std::size_t>(sqlite3_vfs_find(nullptr)->mxPathname) - kLongestSuffix.size();
+  std::error_code error;
+  const std::filesystem::path real =
+      std::filesystem::weakly_canonical(file, error);  // links count by their ends
+  const std::size_t bytes = (error ? std::filesystem::absolute(file) : real).native().size();
+  if (bytes > most)
+    throw UserError(fmt::format(
+        "{}: its whole path has {} bytes, and SQLite opens none of more than {}; give a shorter one", file,
+        bytes, most));
+}
+
 void Connection::Close::operator()(sqlite3* database) const { sqlite3_close_v2(database); }
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
 Connection::Connection(const std::string& file, Access access) : file_(file) {
   CheckFiles(file);
+  CheckPathLength(file);
   std::error_code error;
   // What a link leads to: SQLite's journals lie beside that.
   const std::filesystem::path real = std::filesystem::canonical(file, error);

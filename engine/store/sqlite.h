@@ -26,6 +26,9 @@ class StoreError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// UserError where the path of FILE, which need not be there, is longer than SQLite takes.
+void CheckPathLength(const std::string& file);
+
 class Connection {
  public:
   enum class Access { kReadOnly, kReadWrite, kCreate };

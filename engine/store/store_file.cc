@@ -110,6 +110,8 @@ void CheckOneName(const std::string& file) {
 StoreFile::StoreFile(const std::string& dir, const Recipe& recipe, const RunLayout& layout,
                      const Taking& taking)
     : dir_(dir) {
+  CheckPathLength(FileIn(dir));
+  static_cast<void>(SaidToBeShared());  // what it refuses is refused before anything is made
   first_created_dir_ = MakeDirectory(dir);
   Lock();
   created_ = !fs::exists(FileIn(dir));
