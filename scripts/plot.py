@@ -51,7 +51,7 @@ def main():
         sys.exit(__doc__)
     folder = pathlib.Path(sys.argv[1])
     try:
-        data = json.loads((folder / "data.json").read_text())
+        data = json.loads((folder / "data.json").read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         sys.exit(f"{folder / 'data.json'}: {error}")
     known = [figure["id"] for figure in data["figures"]]

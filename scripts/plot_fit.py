@@ -133,7 +133,7 @@ def main():
         sys.exit(__doc__)
     directory = pathlib.Path(sys.argv[1])
     try:
-        fit = json.loads((directory / "fit.json").read_text())
+        fit = json.loads((directory / "fit.json").read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         sys.exit(f"{directory / 'fit.json'}: {error}")
     plot_style.use_style()

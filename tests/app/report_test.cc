@@ -76,6 +76,29 @@ TEST_F(ReportTest, DrawsWhatItsDataList) {
   EXPECT_FALSE(fs::exists(Out() / "figures" / "plot.log"));
 }
 
+// A locale that reads text as something else must not change a label.
+TEST_F(ReportTest, ItsDataAreUtf8InEveryLocale) {
+  if (!HasMatplotlib()) GTEST_SKIP() << "matplotlib is not installed";
+  ASSERT_EQ(Report("--no-figures").status, 0);
+  const fs::path figures = Out() / "figures";
+  std::string data = ReadAll(figures / "data.json");
+  const std::string label = "\"label\":\"RBS\"";
+  const std::size_t at = data.find(label);
+  ASSERT_NE(at, std::string::npos) << data;
+  std::ofstream(figures / "data.json") << data.replace(at, label.size(), "\"label\":\"ED\u00b3R\"");
+  const auto drawn_in = [&](const std::string& locale) {
+    const std::string line = fmt::format(
+        "PYTHONUTF8=0 PYTHONCOERCECLOCALE=0 LC_ALL={} /usr/bin/python3 -B {}/scripts/plot.py {} "
+        "overview-arms-1",
+        locale, ED3R_SOURCE_DIR, figures.string());
+    EXPECT_EQ(std::system(line.c_str()), 0) << line;
+    return ReadAll(figures / "overview-arms-1.svg");
+  };
+  const std::string in_utf8 = drawn_in("C.UTF-8");
+  EXPECT_GT(in_utf8.size(), 0u);
+  EXPECT_EQ(drawn_in("C"), in_utf8);
+}
+
 TEST_F(ReportTest, WithoutFiguresWritesAllElse) {
   const CommandResult result = Report("--no-figures", "ED3R_PYTHON=/nonexistent/python3");
   EXPECT_EQ(result.status, 0);
