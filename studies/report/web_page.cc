@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "engine/core/files/file.h"
 #include "engine/core/files/shipped.h"
 #include "engine/core/json_text.h"
@@ -12,10 +10,8 @@
 namespace ed3r::report {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Only strings of a JSON text hold '<', and there it may be written as an escape: no text ends the element that holds it.
-std::string ScriptSafe(std::string json) {
+std::string ScriptSafe(const std::string& json) {
   std::string out;
   out.reserve(json.size());
   for (const char c : json) {
