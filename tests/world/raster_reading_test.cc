@@ -293,12 +293,57 @@ TEST_F(RasterReadingTest, ATextGridsHeaderSaysEachThingOnce) {
             "'g.asc': line 5: 'cellsize' beside 'dx' or 'dy'; leave one out");
   EXPECT_EQ(says("", "0\ncellsize 10\n"),
             "'g.asc': line 6: 'cellsize' stands below heights; put it above them");
-  EXPECT_EQ(says("cellsize 10\n", "4294967298"),
-            "'g.asc': line 6: '4294967298' is no height; allowed: -2147483648 .. 2147483647");
+  EXPECT_EQ(says("cellsize 10\n", "4294967298"), "10.00");  // in no cell that the area needs
   std::string text = "ncols 4294967308\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 10\n0";
   for (int i = 1; i < 120; ++i) text += fmt::format(" {}", i % 12);
   folder.Write("g.asc", text + "\n");
   EXPECT_EQ(Height("g.asc"), "'g.asc': line 1: ncols is '4294967308'; allowed: a whole number of 32 bits");
+}
+
+// GDAL begins the heights at the first line that begins with no letter: all rows were shifted.
+TEST_F(RasterReadingTest, ATextGridsHeightsBeginBehindItsHeader) {
+  const auto says = [&](const std::string& header, const std::string& first, const std::string& format) {
+    std::string grid = header + first;
+    for (int i = 1; i < 120; ++i) {
+      const int column = i % 12, row = 9 - i / 12;
+      grid += (column == 0 ? "\n" : " ") + fmt::format(fmt::runtime(format), 2.0 * column + 3.0 * row);
+    }
+    folder.Write("g.asc", grid + "\n");
+    return Height("g.asc");
+  };
+  const std::string counts = "ncols 12\nnrows 10\n", corner = "xllcorner 0\nyllcorner 0\n";
+  const std::string header = counts + corner + "cellsize 10\nNODATA_value nan\n";
+  for (const std::string format : {"{:.0f}", "{:.1f}"}) {
+    EXPECT_EQ(says(header, "27", format), "44.00");
+    EXPECT_EQ(says(header, "nan", format), "44.00");
+    EXPECT_EQ(says("ncols 12\n nrows 10\n" + corner + "cellsize 10\n", "27", format), "44.00");
+    EXPECT_EQ(says(counts + corner + "cellsize\n10\n", "27", format), "44.00");
+    EXPECT_EQ(says(counts + corner + "cellsize 10 ", "27", format), "44.00");
+  }
+  EXPECT_EQ(
+      says(header, "nan", fmt::format("{{:{}.1f}}", 120)),
+      "'g.asc': not readable as an ESRI ASCII grid or a GeoTIFF (g.asc: Couldn't find data values in ASCII "
+      "Grid "
+      "file.); write a number where its heights begin, and no letter: NODATA_value -9999, and -9999 for "
+      "nan");
+}
+
+// GDAL makes 0 of them.
+TEST_F(RasterReadingTest, ATextGridsWordsAreNoHeightOf0) {
+  const auto says = [&](const std::string& one, const std::string& others) {
+    std::string grid = "ncols 12\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value nan\n";
+    for (int i = 0; i < 120; ++i) grid += (i == 63 ? one : others) + (i % 12 == 11 ? "\n" : " ");
+    folder.Write("g.asc", grid);
+    return Height("g.asc");
+  };
+  for (const std::string others : {"20", "20.5"}) {
+    EXPECT_EQ(
+        says("nan", others),
+        "'g.asc': 1 of the 99 cells that the area needs have no data (NODATA), the first at [30, 40] m from "
+        "the south-west cell; move or shrink offset_m and extent_m");
+    EXPECT_EQ(says("+-12", others), "'g.asc': line 12: '+-12' is no number");
+    EXPECT_EQ(says("+12", others), others == "20" ? "8.00" : "8.50");
+  }
 }
 
 // Where one number divides the other, exchanged ones passed; lines that are no rows were refused.

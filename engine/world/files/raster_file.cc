@@ -30,6 +30,13 @@ bool IsUsualMark(double value, GDALDataType type) {
   return std::abs(value) > 0.99 * kLargest && std::abs(value) < 1.01 * kLargest;
 }
 
+// A text's number in GDAL's type: that of its NODATA, and the same as in a GeoTIFF made from it.
+double AsGdalKeepsIt(double height, GDALDataType type) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  if (type == GDT_Float32) return static_cast<float>(std::clamp(height, -kLargest, kLargest));
+  return type == GDT_Int32 ? height + 0.0 : height;  // whole numbers have no -0
+}
+
 }  // namespace
 
 // The session comes before the dataset and goes after it.
@@ -54,8 +61,15 @@ RasterFile::RasterFile(const GridTerrainSpec& spec) : spec_(spec), gdal_(std::ma
   gdal_->dataset.reset(
       GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, kDrivers));
   dataset_ = gdal_->dataset.get();
-  if (dataset_ == nullptr)
-    Fail(fmt::format("not readable as an ESRI ASCII grid or a GeoTIFF ({})", QuietGdal::LastError()));
+  if (dataset_ == nullptr) {
+    // So it says where the first lines of heights begin with nan.
+    const bool letters = QuietGdal::LastError().find("find data values") != std::string::npos;
+    Fail(fmt::format("not readable as an ESRI ASCII grid or a GeoTIFF ({}){}", QuietGdal::LastError(),
+                     letters
+                         ? "; write a number where its heights begin, and no letter: NODATA_value -9999, and "
+                           "-9999 for nan"
+                         : ""));
+  }
   CheckComplaints();
   CheckBands();
   band_ = dataset_->GetRasterBand(1);
@@ -67,7 +81,6 @@ RasterFile::RasterFile(const GridTerrainSpec& spec) : spec_(spec), gdal_(std::ma
   CheckBlocks();
   ReadCoding();
   CheckComplaints();
-  if (in_order_) CheckText();
 }
 
 RasterFile::~RasterFile() = default;
@@ -91,9 +104,9 @@ void RasterFile::CheckComplaints() const {
 // GDAL prefers the .aux.xml to what a GeoTIFF says itself, and says nothing of it.
 void RasterFile::OpenAlone() {
   static constexpr const char* kDrivers[] = {"GTiff", nullptr};
-  in_order_ = dataset_->GetDriver() != nullptr && EQUAL(dataset_->GetDriver()->GetDescription(), "AAIGrid");
+  is_text_ = dataset_->GetDriver() != nullptr && EQUAL(dataset_->GetDriver()->GetDescription(), "AAIGrid");
   std::error_code error;
-  if (in_order_ || !std::filesystem::exists(file_ + ".aux.xml", error)) return;
+  if (is_text_ || !std::filesystem::exists(file_ + ".aux.xml", error)) return;
   const QuietGdal quiet;  // what it complains of was said before
   CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", "NO");
   gdal_->alone.reset(GDALDataset::Open(file_.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kDrivers));
@@ -129,7 +142,7 @@ void RasterFile::CheckTransform() {
   columns_ = dataset_->GetRasterXSize();
   rows_ = dataset_->GetRasterYSize();
   CheckAuxXml(transform);
-  if (!in_order_) CheckWorldFiles();
+  if (!is_text_) CheckWorldFiles();
 }
 
 // Where the raster lies does not matter, as the area's place is told from its corner.
@@ -156,12 +169,6 @@ void RasterFile::CheckWorldFiles() const {
           "its cells are {:g} x {:g}, and {:g} x {:g} by the .{} beside it; correct it, or take it away",
           cell_x_m_, cell_y_m_, std::abs(beside[1]), std::abs(beside[5]), ending));
   }
-}
-
-void RasterFile::CheckText() const {
-  const std::string problem = WhyTextGridIsWrong(ReadFile(file_, kMaxModelBytes), columns_, rows_,
-                                                 band_->GetRasterDataType() == GDT_Int32);
-  if (!problem.empty()) Fail(problem);
 }
 
 // GDAL reads whole blocks, whose size the file tells.
@@ -221,22 +228,31 @@ std::vector<double> RasterFile::Read(const CellWindow& window) const {
   return height;
 }
 
-// In the order of the file. A text grid from its first row on: GDAL finds a row by reading those before it, and where
-// one is missing it would read them again and again.
-void RasterFile::ReadRows(const CellWindow& window, double* raw, unsigned char* valid) const {
-  const int top = north_up_ ? rows_ - window.first_row - window.rows : window.first_row;
-  for (int file_row = in_order_ ? 0 : top; file_row < top + window.rows; ++file_row) {
-    const bool wanted = file_row >= top;
+void RasterFile::ReadText(const CellWindow& window, double* raw) const {
+  const GDALDataType type = band_->GetRasterDataType();
+  const auto keep = [&](std::size_t cell, double height) {
+    const int file_row = static_cast<int>(cell / static_cast<std::size_t>(columns_));
+    const int column = static_cast<int>(cell % static_cast<std::size_t>(columns_)) - window.first_column;
     const int row = (north_up_ ? rows_ - 1 - file_row : file_row) - window.first_row;
-    const std::size_t begin = wanted ? static_cast<std::size_t>(row) * window.columns : 0;
-    double unused = 0.0;
-    const int columns = wanted ? window.columns : 1;
-    if (band_->RasterIO(GF_Read, window.first_column, file_row, columns, 1, wanted ? raw + begin : &unused,
-                        columns, 1, GDT_Float64, 0, 0) != CE_None)
+    if (column >= 0 && column < window.columns && row >= 0 && row < window.rows)
+      raw[static_cast<std::size_t>(row) * window.columns + column] = AsGdalKeepsIt(height, type);
+  };
+  const std::string problem = ReadTextGrid(ReadFile(file_, kMaxModelBytes), columns_, rows_, keep);
+  if (!problem.empty()) Fail(problem);
+}
+
+// In the order of the file.
+void RasterFile::ReadRows(const CellWindow& window, double* raw, unsigned char* valid) const {
+  if (is_text_) ReadText(window, raw);
+  const int top = north_up_ ? rows_ - window.first_row - window.rows : window.first_row;
+  for (int file_row = top; file_row < top + window.rows; ++file_row) {
+    const int row = (north_up_ ? rows_ - 1 - file_row : file_row) - window.first_row;
+    const std::size_t begin = static_cast<std::size_t>(row) * window.columns;
+    if (!is_text_ && band_->RasterIO(GF_Read, window.first_column, file_row, window.columns, 1, raw + begin,
+                                     window.columns, 1, GDT_Float64, 0, 0) != CE_None)
       Fail(fmt::format("row {} cannot be read ({})", file_row + 1, QuietGdal::LastError()));
-    if (mask_ != nullptr && wanted &&
-        mask_->RasterIO(GF_Read, window.first_column, file_row, columns, 1, valid + begin, columns, 1,
-                        GDT_Byte, 0, 0) != CE_None)
+    if (mask_ != nullptr && mask_->RasterIO(GF_Read, window.first_column, file_row, window.columns, 1,
+                                            valid + begin, window.columns, 1, GDT_Byte, 0, 0) != CE_None)
       Fail(fmt::format("row {} of its mask cannot be read ({})", file_row + 1, QuietGdal::LastError()));
   }
   CheckComplaints();

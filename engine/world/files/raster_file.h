@@ -1,4 +1,4 @@
-// A raster of heights as its file has it, read through GDAL into metres: linear unit, vertical unit, scale and offset
+// A raster of heights as its file has it, read through GDAL (a text grid's heights by text_grid.h) into metres: linear unit, vertical unit, scale and offset
 // are applied; cells that a mask, an alpha band or a NODATA value leaves out, or that hold a usual mark for holes, or
 // lie far from all other heights, are refused where they are needed.
 //
@@ -58,9 +58,9 @@ class RasterFile {
   void CheckAuxXml(const std::array<double, 6>& transform) const;
   void CheckWorldFiles() const;
   void CheckBlocks() const;
-  void CheckText() const;
   void ReadCoding();
   void CheckMask() const;
+  void ReadText(const CellWindow& window, double* raw) const;
   void ReadRows(const CellWindow& window, double* raw, unsigned char* valid) const;
   void MarkMissingBlocks(const CellWindow& window, std::vector<double>& raw) const;
   void CheckHoles(const CellWindow& window, const std::vector<double>& raw,
@@ -78,7 +78,7 @@ class RasterFile {
   std::string file_;                // absolute: the name that its neighbours share
   RasterUnits units_;
   double scale_ = 1.0, offset_ = 0.0;  // height in its unit = scale * value + offset
-  bool north_up_ = true, in_order_ = false, signed_bytes_ = false;
+  bool north_up_ = true, is_text_ = false, signed_bytes_ = false;
   int columns_ = 0, rows_ = 0;
   double cell_x_m_ = 0.0, cell_y_m_ = 0.0;
 };

@@ -8,16 +8,16 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <optional>
 #include <set>
+
+#include "engine/core/parse_number.h"
 
 namespace ed3r::world {
 namespace {
 
-std::optional<double> GridNumber(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
+std::optional<double> GridNumber(std::string_view text) {
+  const std::string_view word = WithoutPlus(text);
   double value = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || std::isinf(value)) return std::nullopt;
@@ -36,12 +36,10 @@ std::string HeaderName(std::string_view word) {
 
 class TextGrid {
  public:
-  TextGrid(int columns, int rows, bool whole_numbers)
-      : columns_(static_cast<std::size_t>(columns)),
-        rows_(static_cast<std::size_t>(rows)),
-        whole_numbers_(whole_numbers) {}
+  TextGrid(int columns, int rows, const KeepHeight& keep)
+      : columns_(static_cast<std::size_t>(columns)), rows_(static_cast<std::size_t>(rows)), keep_(keep) {}
 
-  std::string WhyWrong(std::string_view text) {
+  std::string Read(std::string_view text) {
     constexpr std::string_view kSpace = " \t\r\n";
     for (std::size_t begin = 0; begin < text.size();) {
       if (text[begin] == '\n') ++line_, EndLine();
@@ -59,7 +57,7 @@ class TextGrid {
   }
 
  private:
-  // GDAL takes a word among the heights for 0, the first of two keys, and what is left of a number in 32 bits.
+  // GDAL, which reads the header, takes the first of two keys, and what is left of a count in 32 bits.
   std::string Hear(std::string_view word) {
     if (const std::string name = HeaderName(word); !name.empty()) {
       if (heights_ + in_line_ > 0) return fmt::format("'{}' stands below heights; put it above them", word);
@@ -71,8 +69,10 @@ class TextGrid {
     }
     const std::optional<double> value = GridNumber(word);
     if (!value) return fmt::format("'{}' is no number", word);
-    const bool height = after_name_.empty();
-    in_line_ += height;
+    if (after_name_.empty()) {
+      keep_(heights_ + in_line_++, *value);
+      return "";
+    }
     constexpr double kFarthest = 1e9;  // of any coordinate system's metres, feet or degrees
     if (after_name_.starts_with("xll") || after_name_.starts_with("yll"))
       if (!(std::abs(*value) <= kFarthest))
@@ -81,10 +81,7 @@ class TextGrid {
                         (after_name_ == "nrows" && *value != static_cast<double>(rows_));
     if (counts) return fmt::format("{} is '{}'; allowed: a whole number of 32 bits", after_name_, word);
     after_name_.clear();
-    if (!height || !whole_numbers_ || std::isnan(*value)) return "";
-    using Limits = std::numeric_limits<std::int32_t>;
-    if (*value >= Limits::min() && *value <= Limits::max()) return "";
-    return fmt::format("'{}' is no height; allowed: {} .. {}", word, Limits::min(), Limits::max());
+    return "";
   }
 
   void EndLine() {
@@ -94,8 +91,8 @@ class TextGrid {
     in_line_ = 0;
   }
 
-  // GDAL takes the numbers as they come: where there are more or fewer than the header says, rows are shifted. Lines need
-  // not be rows, but a line for each column is a header whose two numbers are exchanged.
+  // Numbers are taken as they come: where there are more or fewer than the header says, rows are shifted. Lines need not be
+  // rows, but a line for each column is a header whose two numbers are exchanged.
   std::string WhyOtherHeights() const {
     const std::size_t cells = columns_ * rows_;
     if (heights_ != cells)
@@ -111,7 +108,7 @@ class TextGrid {
   }
 
   std::size_t columns_, rows_;
-  bool whole_numbers_;
+  const KeepHeight& keep_;
   std::set<std::string> names_;
   std::string after_name_;  // of the header: its value comes next
   std::size_t heights_ = 0, in_line_ = 0, in_first_line_ = 0, line_ = 1;
@@ -120,8 +117,8 @@ class TextGrid {
 
 }  // namespace
 
-std::string WhyTextGridIsWrong(std::string_view text, int columns, int rows, bool whole_numbers) {
-  return TextGrid(columns, rows, whole_numbers).WhyWrong(text);
+std::string ReadTextGrid(std::string_view text, int columns, int rows, const KeepHeight& keep) {
+  return TextGrid(columns, rows, keep).Read(text);
 }
 
 }  // namespace ed3r::world
