@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/core/check.h"
+#include "engine/core/files/line_ends.h"
 #include "engine/core/message.h"
 
 namespace ed3r::flight_logs {
@@ -66,8 +67,7 @@ class Standard {
  public:
   Standard(const std::string& path, std::string& text, bool skip_bad)
       : path_(path), text_(text), skip_bad_(skip_bad) {
-    for (std::size_t i = 0; i < text_.size(); ++i)
-      if (text_[i] == '\r' && (i + 1 == text_.size() || text_[i + 1] != '\n')) text_[i] = '\n';
+    text_ = WithLineFeeds(std::move(text_));
   }
 
   void Run() {

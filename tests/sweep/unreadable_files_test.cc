@@ -74,6 +74,11 @@ TEST(UnreadableFilesTest, NestingWithoutEnd) {
 
 TEST(UnreadableFilesTest, LineEndsOfOtherSystems) {
   EXPECT_EQ(LoadText("# Why?\r\nname: x\r\nmissions: 4\r\n").Missions(), 4);
+  EXPECT_EQ(LoadText("# Why?\rname: x\rmissions: 4\r").Missions(), 4);
+  // What stands behind a comment was part of it.
+  EXPECT_EQ(LoadText("name: x # short\rmissions: 4\n").Missions(), 4);
+  EXPECT_EQ(Refusal("name: x # short\rmissions: no\n"),
+            "x.yaml:2:11: missions: 'no' is not allowed; allowed: 1 .. 10000000");
   EXPECT_EQ(Refusal("name: x\r\nmissions: no\r\n"),
             "x.yaml:2:11: missions: 'no' is not allowed; allowed: 1 .. 10000000");
 }

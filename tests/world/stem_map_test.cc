@@ -71,6 +71,7 @@ TEST_F(StemMapTest, TablesAsProgramsWriteThem) {
       "x_m\ty_m\tdbh_cm\theight_m\tcrown_depth_m\tcrown_radius_m\n3\t7\t20\t15\t8\t2\n63\t57\t30\t21.5\t9\t2."
       "5\n");
   ExpectTrees("x_m,y_m,dbh_cm,height_m,crown_depth_m,crown_radius_m\r3,7,20,15,8,2\r63,57,30,21.5,9,2.5\r");
+  ExpectTrees("# plot\r" + kHeader + "# pines\r3,7,20,15,8,2\n# oaks\r63,57,30,21.5,9,2.5\n");
   ExpectTrees(
       "\"\",\"x_m\",\"y_m\",\"dbh_cm\",\"height_m\",\"crown_depth_m\",\"crown_radius_m\"\n\"1\",3,7,20,15,8,"
       "2\n"

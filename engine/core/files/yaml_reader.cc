@@ -14,6 +14,7 @@
 #include "engine/core/check.h"
 #include "engine/core/files/end_mark.h"
 #include "engine/core/files/file.h"
+#include "engine/core/files/line_ends.h"
 #include "engine/core/files/utf8.h"
 #include "engine/core/message.h"
 #include "engine/core/parse_number.h"
@@ -183,7 +184,9 @@ class TreeBuilder : public YAML::EventHandler {
 
 YamlFile ReadYamlFile(const std::string& file) { return ParseYaml(file, ReadFile(file, kMaxYamlFileLength)); }
 
-YamlFile ParseYaml(const std::string& file, const std::string& text) {
+// yaml-cpp does not end a comment at a lone carriage return: the setting after it would vanish.
+YamlFile ParseYaml(const std::string& file, const std::string& as_written) {
+  const std::string text = WithLineFeeds(as_written);
   CheckText(file, text);
   if (IsCutShort(text))
     FailAt(file, fmt::format("is cut short: its last line, '{}', is missing; write it anew", kEndMark));

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "engine/core/check.h"
+#include "engine/core/files/line_ends.h"
 #include "engine/core/message.h"
 
 namespace ed3r::world {
@@ -77,7 +79,7 @@ DelimitedText ToDelimitedText(const std::string& path, std::string text) {
     throw UserError(fmt::format("{}: UTF-16 text; save it as UTF-8", path));
   if (text.find('\0') != std::string::npos)
     throw UserError(fmt::format("{}: is no text; allowed: a table with commas, semicolons or tabs", path));
-  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
+  text = WithLineFeeds(std::move(text));
   const std::size_t first = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   const std::string_view told = std::string_view(text).substr(first);
   const char separator =
