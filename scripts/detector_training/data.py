@@ -117,9 +117,13 @@ def read_rendered(folder: pathlib.Path) -> DataSet:
     for column in ("view", "world", "distance_m", "fire_px", "smoke_px", "occluded", "label"):
         if rows and column not in rows[0]:
             raise DataError(f"{folder}/labels.csv: has no column {column}")
+    if rows and "index" in rows[0] and any(float(row["index"]) < float(above["index"]) for above, row in zip(rows, rows[1:])):
+        raise DataError(f"{folder}/labels.csv: its rows are not in the order of their frames; sort them by index")
     number = {key: np.array([float(row[key]) for row in rows]) for key in ("distance_m", "fire_px", "smoke_px",
                                                                          "occluded", "label")}
-    positive = number["label"] > 0
+    if not np.isin(number["label"], (0, 1)).all():
+        raise DataError(f"{folder}/labels.csv: a label is neither 0 nor 1")
+    positive = number["label"] == 1
     world = np.array([row["world"] for row in rows])
     view = np.array([f"{row['world']}/{row['view']}" for row in rows])
     return DataSet(str(folder), Frames([frames]), positive, clear(number, 1) == positive, view,

@@ -257,7 +257,7 @@ def labels(one):
     if not isinstance(table, str):
         header, rows, delimiter = table
         numbers = [[files_text.number(row[header.index(name)]) if name in header else None for name in NAMES[1:]] for row in rows]
-        if len(rows) != COUNT or any(None in row or min(row) < 0 or row[4] > 1 or row[5] > 1 for row in numbers):
+        if len(rows) != COUNT or any(None in row or min(row) < 0 or row[0] % 1 or row[4] > 1 or row[5] not in (0, 1) for row in numbers):
             table = "it has cells that are no numbers, or lacks some"
         else:
             fires = [row[5] != 0 for row in numbers]

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
@@ -22,9 +24,35 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMaxFrameBytes = std::uintmax_t{16} << 30;
 
+// Frames and rows go together by their order alone: a table that was sorted otherwise would label other frames.
+void CheckOrder(const CsvTable& table) {
+  const auto column = std::find(table.columns().begin(), table.columns().end(), "index");
+  if (column == table.columns().end()) return;
+  const auto index = static_cast<std::size_t>(column - table.columns().begin());
+  constexpr double kBig = 1e9;
+  double above = 0.0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double number = table.Number(row, index, 0, kBig);
+    if (number < above)
+      throw UserError(
+          fmt::format("{}{} stands below {}; allowed: rows in the order of their frames; sort them by index",
+                      table.Where(row, index), table.Cell(row, index), table.Cell(row - 1, index)));
+    above = number;
+  }
+}
+
+int WholeNumber(const CsvTable& table, std::size_t row, std::size_t column, int max) {
+  const double number = table.Number(row, column, 0, max);
+  if (number != std::floor(number))
+    throw UserError(fmt::format("{}{} is not allowed; allowed: a whole number of 0 .. {}",
+                                table.Where(row, column), table.Cell(row, column), max));
+  return static_cast<int>(number);
+}
+
 std::vector<FrameLabel> ReadLabels(const std::string& path) {
   const CsvTable table = CsvTable::Read(path);
-  constexpr double kBig = 1e9;
+  CheckOrder(table);
+  constexpr int kBig = 1'000'000'000;
   const std::size_t world = table.Column("world", "the world's name"),
                     view = table.Column("view", "the view's number"),
                     distance = table.Column("distance_m", "the distance to the fire"),
@@ -37,12 +65,12 @@ std::vector<FrameLabel> ReadLabels(const std::string& path) {
     if (!IsUtf8(table.Cell(row, world)))
       throw UserError(fmt::format("{}not UTF-8 text", table.Where(row, world)));
     labels.push_back({.world = std::string(table.Cell(row, world)),
-                      .view = static_cast<int>(table.Number(row, view, 0, kBig)),
+                      .view = WholeNumber(table, row, view, kBig),
                       .distance_m = table.Number(row, distance, 0, kBig),
                       .fire_px = table.Number(row, fire, 0, kBig),
                       .smoke_px = table.Number(row, smoke, 0, kBig),
                       .occluded = table.Number(row, occluded, 0, 1),
-                      .positive = table.Number(row, label, 0, 1) != 0.0});
+                      .positive = WholeNumber(table, row, label, 1) == 1});
   }
   return labels;
 }

@@ -120,6 +120,28 @@ TEST_F(FrameSetTest, RefusesLabelsWithoutAColumn) {
   ExpectRefusal("world");
 }
 
+// A sorted table labelled other frames.
+TEST_F(FrameSetTest, RefusesLabelsInAnotherOrder) {
+  const std::string names = "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label\n";
+  WriteLabels(names + "1,7,1,a,x,12.5,0,0,0,0\n0,7,0,a,x,12.5,3,4,0.25,1\n");
+  ExpectRefusal(
+      "labels.csv:3:1: index: 0 stands below 1; allowed: rows in the order of their frames; sort them by "
+      "index");
+  WriteLabels(names + "3,7,1,a,x,12.5,0,0,0,0\n8,7,0,a,x,12.5,3,4,0.25,1\n");  // frames of a larger set
+  EXPECT_TRUE(ReadFrameSet(folder_).labels[1].positive);
+}
+
+// Any number above 0 was a fire, and a view's fraction was cut away.
+TEST_F(FrameSetTest, RefusesFractionsOfLabelsAndViews) {
+  const std::string names = "world,view,distance_m,fire_px,smoke_px,occluded,label\n";
+  WriteLabels(names + "a,0,12.5,0,0,0,0\na,0,12.5,3,4,0.25,0.3\n");
+  ExpectRefusal("labels.csv:3:19: label: 0.3 is not allowed; allowed: a whole number of 0 .. 1");
+  WriteLabels(names + "a,0,12.5,0,0,0,0\na,0.4,12.5,3,4,0.25,1\n");
+  ExpectRefusal("labels.csv:3:3: view: 0.4 is not allowed; allowed: a whole number of 0 .. 1000000000");
+  WriteLabels(names + "a,0.0,12.5,0,0,0,0\na,1e0,12.5,3,4,0.25,1.0\n");
+  EXPECT_TRUE(ReadFrameSet(folder_).labels[1].positive);
+}
+
 TEST_F(FrameSetTest, FoldersWithoutPicturesAreRefused) {
   EXPECT_THROW(ListPictures(folder_ / "nowhere.png"), UserError);
   fs::create_directories(folder_ / "fire");
