@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <system_error>
+#include <utility>
 
 #include "engine/config/parameters.h"
 
@@ -95,13 +96,22 @@ std::vector<Setting> WithoutAirframe(std::vector<Setting> settings) {
   return settings;
 }
 
-std::vector<Setting> ReadAirframeFile(const std::string& path, const std::string& at) {
+std::vector<Setting> ReadAirframeFile(const std::string& path, const std::string& at,
+                                      std::vector<std::string> above) {
+  constexpr std::size_t kMaxAirframes = 20;
   std::error_code error;
+  for (const std::string& file : above)
+    if (std::filesystem::equivalent(file, path, error))
+      FailAt(at, fmt::format("robot: '{}' is not allowed; it includes this file", path));
+  if (above.size() == kMaxAirframes)
+    FailAt(at, fmt::format("robot: '{}' is one file too many; allowed: a chain of at most {}", path,
+                           kMaxAirframes));
+  above.push_back(path);
   if (!std::filesystem::is_regular_file(path, error))
     FailAt(at,
            fmt::format("robot: '{}' is not a file; allowed: an airframe file as 'ed3r fit --out' writes it",
                        path));
-  std::vector<Setting> settings = SettingReader(FolderOf(path), FolderOf(path), false, {})
+  std::vector<Setting> settings = SettingReader(FolderOf(path), FolderOf(path), false, {}, std::move(above))
                                       .ReadMap(ReadYamlFile(path).root, "an airframe file");
   if (settings.empty())
     FailAt(at, fmt::format("robot: '{}' sets nothing; allowed: an airframe file with a key at least", path));
@@ -141,7 +151,8 @@ void SettingReader::AppendMap(const YamlNode& map, const std::string& prefix,
     if (entry.value.kind == YamlNode::Kind::kMap) {
       AppendMap(entry.value, key + ".", {}, settings);
     } else if (key == kAirframeKey && entry.value.kind == YamlNode::Kind::kScalar) {
-      for (Setting& setting : ReadAirframeFile(PathFrom(folder_, entry.value.text), entry.value.at))
+      for (Setting& setting :
+           ReadAirframeFile(PathFrom(folder_, entry.value.text), entry.value.at, airframes_))
         settings.push_back(std::move(setting));
     } else if (entry.value.kind == YamlNode::Kind::kScalar) {
       settings.push_back(Read(key, entry.at, entry.value.text, entry.value.at));

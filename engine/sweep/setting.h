@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/config/config.h"
@@ -51,19 +52,23 @@ bool NameAnAirframe(const std::vector<Setting>& settings);
 std::vector<Setting> WithoutAirframe(std::vector<Setting> settings);
 
 // The parameters of an airframe file, which 'robot: FILE' includes: a YAML map of robot.*, energy.*, environment.* and
-// cpu.* keys, as `ed3r fit` writes it. Positions are those in that file.
-std::vector<Setting> ReadAirframeFile(const std::string& path, const std::string& at);
+// cpu.* keys, as `ed3r fit` writes it. Positions are those in that file. `above`: the airframe files that include it.
+std::vector<Setting> ReadAirframeFile(const std::string& path, const std::string& at,
+                                      std::vector<std::string> above = {});
 
 // Reads the settings of one file (or of the command line).
 class SettingReader {
  public:
   // Paths are relative to `folder`. Their canonical form is relative to `top_folder`, the sweep file's,
-  // unless they are absolute as written or `keep_absolute` says that the way to `folder` was.
-  SettingReader(std::string folder, std::string top_folder, bool keep_absolute, ValueCheck check)
+  // unless they are absolute as written or `keep_absolute` says that the way to `folder` was. `airframes`: the file, if it is
+  // an airframe's, and those that include it.
+  SettingReader(std::string folder, std::string top_folder, bool keep_absolute, ValueCheck check,
+                std::vector<std::string> airframes = {})
       : folder_(std::move(folder)),
         top_folder_(std::move(top_folder)),
         keep_absolute_(keep_absolute),
-        check_(std::move(check)) {}
+        check_(std::move(check)),
+        airframes_(std::move(airframes)) {}
 
   // Checks key and value. `key_at` and `at` say where each was written.
   Setting Read(const std::string& written_key, const std::string& key_at, const std::string& text,
@@ -82,6 +87,7 @@ class SettingReader {
   std::string top_folder_;
   bool keep_absolute_;
   ValueCheck check_;
+  std::vector<std::string> airframes_;
 };
 
 }  // namespace ed3r::sweep

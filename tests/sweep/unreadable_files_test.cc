@@ -37,6 +37,28 @@ TEST(UnreadableFilesTest, AChainOfThousandsOfBasesEnds) {
                 "/b18.yaml:1:7: base: 'b19.yaml' is one file too many; allowed: a chain of at most 20");
 }
 
+// Was an endless recursion.
+TEST(UnreadableFilesTest, AirframeFilesThatIncludeEachOther) {
+  const ScratchFolder scratch;
+  const auto says = [&](const std::string& airframe) {
+    return Unreadable(scratch.Write("x.yaml", "name: x\nmissions: 1\nset: {robot: " + airframe + "}\n"));
+  };
+  const std::string folder = scratch.Path() + "/";
+  scratch.Write("a.yaml", "robot: b.yaml\n");
+  scratch.Write("b.yaml", "robot: a.yaml\n");
+  scratch.Write("c.yaml", "robot: c.yaml\n");
+  EXPECT_EQ(says("a.yaml"),
+            folder + "b.yaml:1:8: robot: '" + folder + "a.yaml' is not allowed; it includes this file");
+  EXPECT_EQ(says("c.yaml"),
+            folder + "c.yaml:1:8: robot: '" + folder + "c.yaml' is not allowed; it includes this file");
+  for (int i = 0; i < 25; ++i)
+    scratch.Write("d" + std::to_string(i) + ".yaml", "robot: d" + std::to_string(i + 1) + ".yaml\n");
+  EXPECT_EQ(says("d0.yaml"), folder + "d19.yaml:1:8: robot: '" + folder +
+                                 "d20.yaml' is one file too many; allowed: a chain of at most 20");
+  scratch.Write("d19.yaml", "robot.mass_kg: 3\n");
+  EXPECT_EQ(says("d0.yaml"), "accepted");
+}
+
 TEST(UnreadableFilesTest, FilesThatHoldNothing) {
   for (const char* text : {"", "\n\n", "# Only a question\n", "---\n", "~\n"})
     EXPECT_TRUE(Refusal(text).ends_with("the file is empty; a sweep has at least a name and missions"))
