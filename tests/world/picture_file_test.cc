@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <utility>
 
 #include "engine/core/check.h"
 
@@ -113,31 +114,56 @@ std::string WithOrientation(const std::string& png, int orientation, bool little
 }
 
 // Where the pixel is seen that is stored at (3, 5) of 64 x 48, by each orientation of EXIF.
+const cv::Point kSeen[] = {{3, 5}, {60, 5}, {60, 42}, {3, 42}, {5, 3}, {42, 3}, {42, 60}, {5, 60}};
+
 TEST_F(PictureFile, APngIsTurnedAsItsCameraSays) {
   const cv::Mat stored = Pattern<cv::Vec3b>(CV_8UC3);
   const std::string png = Encoded(".png", stored);
   const cv::Vec3b pixel = stored.at<cv::Vec3b>(5, 3);
-  const cv::Point seen[] = {{3, 5}, {60, 5}, {60, 42}, {3, 42}, {5, 3}, {42, 3}, {42, 60}, {5, 60}};
   for (int orientation = 1; orientation <= 8; ++orientation)
     for (const bool little : {true, false}) {
       SCOPED_TRACE(orientation);
       const Picture picture = Read(WithOrientation(png, orientation, little));
       EXPECT_EQ(picture.note, orientation == 1 ? "" : "turned as its camera says");
       EXPECT_EQ(picture.bgr.size(), orientation < 5 ? cv::Size(64, 48) : cv::Size(48, 64));
-      EXPECT_EQ(picture.bgr.at<cv::Vec3b>(seen[orientation - 1]), pixel);
+      EXPECT_EQ(picture.bgr.at<cv::Vec3b>(kSeen[orientation - 1]), pixel);
     }
   for (const int none : {0, 9, 255}) EXPECT_TRUE(Same(Read(WithOrientation(png, none, true)).bgr, stored));
 }
 
+// A JPEG with a segment of metadata behind its first marker.
+std::string WithMetadata(const std::string& jpeg, const std::string& data) {
+  return jpeg.substr(0, 2) + "\xff\xe1" + '\0' + static_cast<char>(data.size() + 2) + data + jpeg.substr(2);
+}
+
 TEST_F(PictureFile, JpegsThatAreTurnedSaySo) {
-  const std::string jpeg = Encoded(".jpg", cv::Mat(48, 64, CV_8UC3, cv::Scalar(9, 90, 200)));
-  for (int orientation = 1; orientation <= 8; ++orientation) {
-    const std::string block = std::string("Exif\0\0", 6) + ExifBlock(orientation, true);
-    const std::string marked =
-        jpeg.substr(0, 2) + "\xff\xe1" + '\0' + static_cast<char>(block.size() + 2) + block + jpeg.substr(2);
-    const Picture picture = Read(marked);
-    EXPECT_EQ(picture.note, orientation == 1 ? "" : "turned as its camera says");
-    EXPECT_EQ(picture.bgr.size(), orientation < 5 ? cv::Size(64, 48) : cv::Size(48, 64));
+  const std::string jpeg = Encoded(".jpg", Pattern<cv::Vec3b>(CV_8UC3));
+  const cv::Vec3b pixel = Read(jpeg).bgr.at<cv::Vec3b>(5, 3);
+  for (int orientation = 1; orientation <= 8; ++orientation)
+    for (const bool little : {true, false}) {
+      const std::string marked =
+          WithMetadata(jpeg, std::string("Exif\0\0", 6) + ExifBlock(orientation, little));
+      const std::string xmp = std::string("http://ns.adobe.com/xap/1.0/") + '\0' + "<x:xmpmeta/>";
+      for (const std::string& camera : {marked, WithMetadata(marked, xmp)}) {
+        SCOPED_TRACE(orientation);
+        const Picture picture = Read(camera);
+        EXPECT_EQ(picture.note, orientation == 1 ? "" : "turned as its camera says");
+        EXPECT_EQ(picture.bgr.size(), orientation < 5 ? cv::Size(64, 48) : cv::Size(48, 64));
+        EXPECT_EQ(picture.bgr.at<cv::Vec3b>(kSeen[orientation - 1]), pixel);
+      }
+    }
+}
+
+// Some write it in four bytes.
+TEST_F(PictureFile, AnOrientationOfFourBytesCounts) {
+  const std::string jpeg = Encoded(".jpg", Pattern<cv::Vec3b>(CV_8UC3));
+  for (const bool little : {true, false}) {
+    std::string block = ExifBlock(6, little);
+    block[little ? 12 : 13] = '\x4';
+    if (!little) std::swap(block[19], block[21]);
+    const Picture picture = Read(WithMetadata(jpeg, std::string("Exif\0\0", 6) + block));
+    EXPECT_EQ(picture.note, "turned as its camera says");
+    EXPECT_EQ(picture.bgr.size(), cv::Size(48, 64));
   }
 }
 

@@ -27,7 +27,7 @@ class Tiff {
 }  // namespace
 
 int ExifOrientation(std::string_view exif) {
-  constexpr std::uint32_t kOrientation = 0x0112, kShort = 3;
+  constexpr std::uint32_t kOrientation = 0x0112, kShort = 3, kLong = 4;
   constexpr std::size_t kEntry = 12;
   if (exif.starts_with(std::string_view("Exif\0\0", 6))) exif.remove_prefix(6);
   if (!exif.starts_with("II") && !exif.starts_with("MM")) return 1;
@@ -36,8 +36,9 @@ int ExifOrientation(std::string_view exif) {
   const std::uint32_t entries = tiff.Number(directory, 2);
   for (std::uint32_t i = 0; i < entries; ++i) {
     const std::size_t entry = directory + 2 + kEntry * i;
-    if (tiff.Number(entry, 2) != kOrientation || tiff.Number(entry + 2, 2) != kShort) continue;
-    const std::uint32_t value = tiff.Number(entry + 8, 2);
+    const std::uint32_t type = tiff.Number(entry + 2, 2);
+    if (tiff.Number(entry, 2) != kOrientation || (type != kShort && type != kLong)) continue;
+    const std::uint32_t value = tiff.Number(entry + 8, type == kShort ? 2 : 4);
     return value >= 1 && value <= 8 ? static_cast<int>(value) : 1;
   }
   return 1;

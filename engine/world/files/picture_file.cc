@@ -151,7 +151,8 @@ Picture JpegPicture(const std::string& bytes, const std::string& path) {
   Picture picture;
   try {
     const cv::Mat wrapped(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
-    picture.bgr = cv::imdecode(wrapped, cv::IMREAD_COLOR);
+    // OpenCV looks for the orientation in the first segment of metadata alone, which may be XMP.
+    picture.bgr = cv::imdecode(wrapped, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {
     picture.bgr.release();
   }
@@ -161,7 +162,9 @@ Picture JpegPicture(const std::string& bytes, const std::string& path) {
   if (channels == 4) notes.push_back("from four inks");
   HeaderReader header(bytes, path);
   header.Read();
-  if (ExifOrientation(header.Exif()) != 1) notes.push_back(kTurned);  // by OpenCV
+  const int orientation = ExifOrientation(header.Exif());
+  picture.bgr = Turned(picture.bgr, orientation);
+  if (orientation != 1) notes.push_back(kTurned);
   picture.note = fmt::format("{}", fmt::join(notes, ", "));
   return picture;
 }
