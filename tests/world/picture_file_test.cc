@@ -98,10 +98,8 @@ std::string ExifBlock(int orientation, bool little) {
   return block + std::string(little ? 7 : 6, '\0');
 }
 
-// A PNG with an eXIf chunk behind its header.
-std::string WithOrientation(const std::string& png, int orientation, bool little) {
-  const std::string chunk = ExifBlock(orientation, little);
-  const std::string typed = "eXIf" + chunk;
+// A PNG with a chunk behind its header, which begins with its name.
+std::string WithChunk(const std::string& png, const std::string& typed) {
   const auto number = [](std::uint32_t value) {
     std::string bytes;
     for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(value >> shift);
@@ -109,8 +107,12 @@ std::string WithOrientation(const std::string& png, int orientation, bool little
   };
   const auto sum = ::crc32(0, reinterpret_cast<const Bytef*>(typed.data()), static_cast<uInt>(typed.size()));
   constexpr std::size_t kAfterHeader = 33;
-  return png.substr(0, kAfterHeader) + number(static_cast<std::uint32_t>(chunk.size())) + typed +
+  return png.substr(0, kAfterHeader) + number(static_cast<std::uint32_t>(typed.size() - 4)) + typed +
          number(static_cast<std::uint32_t>(sum)) + png.substr(kAfterHeader);
+}
+
+std::string WithOrientation(const std::string& png, int orientation, bool little) {
+  return WithChunk(png, "eXIf" + ExifBlock(orientation, little));
 }
 
 // Where the pixel is seen that is stored at (3, 5) of 64 x 48, by each orientation of EXIF.
@@ -129,6 +131,23 @@ TEST_F(PictureFile, APngIsTurnedAsItsCameraSays) {
       EXPECT_EQ(picture.bgr.at<cv::Vec3b>(kSeen[orientation - 1]), pixel);
     }
   for (const int none : {0, 9, 255}) EXPECT_TRUE(Same(Read(WithOrientation(png, none, true)).bgr, stored));
+  const Picture as_in_a_jpeg =
+      Read(WithChunk(png, "eXIf" + std::string("Exif\0\0", 6) + ExifBlock(6, false)));
+  EXPECT_EQ(as_in_a_jpeg.note, "turned as its camera says");
+  EXPECT_EQ(as_in_a_jpeg.bgr.at<cv::Vec3b>(kSeen[5]), pixel);
+}
+
+// What libpng leaves out without a word where its checksum is wrong.
+TEST_F(PictureFile, APngsDamagedChunksAreRefused) {
+  const std::string png = Encoded(".png", Pattern<cv::Vec3b>(CV_8UC3));
+  constexpr std::size_t kInChunk = 33 + 8;
+  for (const auto& [chunk, name] : {std::pair("eXIf" + ExifBlock(6, true), "eXIf"),
+                                    std::pair("tRNS" + std::string("\0\x9\0\x9\0\x9", 6), "tRNS")}) {
+    std::string damaged = WithChunk(png, chunk);
+    EXPECT_NO_THROW(Read(damaged));
+    damaged[kInChunk + 3] ^= 1;
+    ExpectRefusal(damaged, fmt::format("is damaged or cut short: {}: CRC error", name));
+  }
 }
 
 // A JPEG with a segment of metadata behind its first marker.

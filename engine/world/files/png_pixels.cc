@@ -40,6 +40,11 @@ class Reader {
         info_(png_ == nullptr ? nullptr : png_create_info_struct(png_)) {
     ED3R_CHECK(info_ != nullptr, "libpng has no memory");
     png_set_read_fn(png_, &source, TakeBytes);
+    // libpng drops an EXIF block that begins as in a JPEG, without a word; as an unknown chunk it comes as it stands.
+    const png_byte exif[] = "eXIf";
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_ALWAYS, exif, 1);
+    // Others of no pixels may say what is see-through: damaged, they would be left out without a word, too.
+    png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   }
   ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
   Reader(const Reader&) = delete;
@@ -70,10 +75,9 @@ class Reader {
 
   // After Rows: the chunk may stand behind the pixels.
   int Orientation() const {
-    png_bytep exif = nullptr;
-    png_uint_32 length = 0;
-    if (png_get_eXIf_1(png_, info_, &length, &exif) == 0 || exif == nullptr) return 1;
-    return ExifOrientation({reinterpret_cast<const char*>(exif), length});
+    png_unknown_chunkp exif = nullptr;  // no other kind is kept
+    if (png_get_unknown_chunks(png_, info_, &exif) == 0) return 1;
+    return ExifOrientation({reinterpret_cast<const char*>(exif->data), exif->size});
   }
 
   cv::Size Size() const {
