@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/files/file.h"
 #include "tests/world/test_rasters.h"
 #include "tests/world/world_files.h"
 
@@ -363,6 +364,31 @@ TEST_F(RasterReadingTest, ATextGridsLinesNeedNotBeItsRows) {
       "or bring the lines to 24 heights");
   EXPECT_EQ(says(12, 24, 12), "44.00");
   for (const int in_line : {1, 10, 15, 30, 300}) EXPECT_EQ(says(12, 25, in_line), "44.00") << in_line;
+}
+
+// Each was read, a million numbers of each: for minutes. libtiff takes the first.
+TEST_F(RasterReadingTest, OfATagThatIsThereTwiceTheFirstCounts) {
+  WriteRaster(folder.Path("g.tif"), Slope());
+  std::string tiff = ReadFile(folder.Path("g.tif"), 1 << 20), tags;
+  const auto number = [&](std::size_t at, int bytes) {
+    std::size_t value = 0;
+    for (int i = bytes; i-- > 0;)
+      value = value << 8 | static_cast<unsigned char>(tiff[at + static_cast<std::size_t>(i)]);
+    return value;
+  };
+  const std::size_t directory = number(4, 4), end = tiff.size();
+  int count = 0;
+  for (std::size_t i = 0; i < number(directory, 2); ++i) {
+    const std::string tag = tiff.substr(directory + 2 + 12 * i, 12);
+    const auto name = static_cast<int>(number(directory + 2 + 12 * i, 2));
+    const bool of_blocks = name == 273 || name == 279;
+    tags += tag;
+    for (int again = 0; again < (of_blocks ? 500 : 0); ++again) tags += Shorts({name, 4, 0, 16, 8, 0});
+    count += of_blocks ? 501 : 1;
+  }
+  tiff.replace(4, 4, Shorts({static_cast<int>(end), 0}));
+  folder.Write("g.tif", tiff + Shorts({count}) + tags + Shorts({0, 0}));
+  EXPECT_EQ(Height(), "44.00");
 }
 
 // The first page was taken, without a word.

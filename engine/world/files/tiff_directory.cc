@@ -44,7 +44,7 @@ struct Bytes {
 };
 
 struct Tag {
-  std::uint64_t name = 0, type = 0, count = 0;
+  std::uint64_t type = 0, count = 0;
   std::uint64_t begin = 0;  // of its values
 };
 
@@ -63,16 +63,19 @@ class TiffDirectory {
     directory_.end = directory_.begin + count_bytes + tags * tag_bytes + offset_bytes;
     for (std::uint64_t i = 0; i < tags; ++i) {
       const std::uint64_t at = directory_.begin + count_bytes + i * tag_bytes;
-      Tag tag{numbers_.At(at, 2), numbers_.At(at + 2, 2), numbers_.At(at + 4, offset_bytes),
-              at + 4 + offset_bytes};
+      Tag tag{numbers_.At(at + 2, 2), numbers_.At(at + 4, offset_bytes), at + 4 + offset_bytes};
       if (tag.count > offset_bytes / std::max<std::size_t>(1, SizeOf(tag)))
         tag.begin = numbers_.At(tag.begin, offset_bytes);
-      tags_.push_back(tag);
+      tags_.emplace(numbers_.At(at, 2), tag);
     }
   }
 
   std::uint64_t At(std::uint64_t place, std::size_t bytes) { return numbers_.At(place, bytes); }
-  const std::vector<Tag>& tags() const { return tags_; }
+  // Null where it is not there. Of two of one name the first, which libtiff takes.
+  const Tag* Find(std::uint64_t name) const {
+    const auto found = tags_.find(name);
+    return found == tags_.end() ? nullptr : &found->second;
+  }
   Bytes header() const { return header_; }
   Bytes directory() const { return directory_; }
 
@@ -80,10 +83,10 @@ class TiffDirectory {
   std::vector<std::uint64_t> Numbers(std::uint64_t name) {
     constexpr std::uint64_t kMostBlocks = 1 << 20;
     std::vector<std::uint64_t> values;
-    for (const Tag& tag : tags_)
-      if (tag.name == name && SizeOf(tag) > 0)
-        for (std::uint64_t i = 0; i < std::min(tag.count, kMostBlocks); ++i)
-          values.push_back(numbers_.At(tag.begin + i * SizeOf(tag), SizeOf(tag)));
+    const Tag* const tag = Find(name);
+    if (tag == nullptr || SizeOf(*tag) == 0) return values;
+    for (std::uint64_t i = 0; i < std::min(tag->count, kMostBlocks); ++i)
+      values.push_back(numbers_.At(tag->begin + i * SizeOf(*tag), SizeOf(*tag)));
     return values;
   }
 
@@ -94,7 +97,7 @@ class TiffDirectory {
 
   TiffNumbers numbers_;
   Bytes header_, directory_;
-  std::vector<Tag> tags_;
+  std::map<std::uint64_t, Tag> tags_;  // by their numbers
 };
 
 }  // namespace
@@ -103,14 +106,13 @@ std::map<int, int> ReadGeoKeys(const std::filesystem::path& file) {
   constexpr std::uint64_t kKeyDirectory = 34735, kShorts = 3, kMaxKeys = 1000;
   TiffDirectory tiff(file);
   std::map<int, int> keys;
-  for (const Tag& tag : tiff.tags()) {
-    if (tag.name != kKeyDirectory || tag.type != kShorts) continue;
-    // A version, two of the revision, their number; then for each its name, where it is, how many, the value.
-    const std::uint64_t begin = tag.begin, count = tiff.At(begin + 6, 2);
-    for (std::uint64_t k = 1; k <= count && k <= kMaxKeys; ++k)
-      if (tiff.At(begin + 8 * k + 2, 2) == 0)
-        keys[static_cast<int>(tiff.At(begin + 8 * k, 2))] = static_cast<int>(tiff.At(begin + 8 * k + 6, 2));
-  }
+  const Tag* const tag = tiff.Find(kKeyDirectory);
+  if (tag == nullptr || tag->type != kShorts) return keys;
+  // A version, two of the revision, their number; then for each its name, where it is, how many, the value.
+  const std::uint64_t begin = tag->begin, count = tiff.At(begin + 6, 2);
+  for (std::uint64_t k = 1; k <= count && k <= kMaxKeys; ++k)
+    if (tiff.At(begin + 8 * k + 2, 2) == 0)
+      keys[static_cast<int>(tiff.At(begin + 8 * k, 2))] = static_cast<int>(tiff.At(begin + 8 * k + 6, 2));
   return keys;
 }
 
