@@ -366,6 +366,28 @@ TEST_F(RasterReadingTest, ATextGridsLinesNeedNotBeItsRows) {
   for (const int in_line : {1, 10, 15, 30, 300}) EXPECT_EQ(says(12, 25, in_line), "44.00") << in_line;
 }
 
+// Was passed over without a word. The heights may be unpacked, so that it is no fault.
+TEST_F(RasterReadingTest, ScaleAndOffsetInTheMetadataAreSaid) {
+  const auto notes = [&](const TestRaster& raster, const std::string& scale, const std::string& offset) {
+    WriteRaster(folder.Path("g.tif"), raster);
+    GDALDataset* dataset = GDALDataset::Open(folder.Path("g.tif").c_str(), GDAL_OF_UPDATE);
+    dataset->GetRasterBand(1)->SetMetadataItem("scale_factor", scale.c_str());
+    dataset->GetRasterBand(1)->SetMetadataItem("add_offset", offset.c_str());
+    GDALClose(dataset);
+    return Scene::Load(folder.Write("w.yaml", GridWorld("    file: g.tif\n")))->Notes();
+  };
+  using Notes = std::vector<std::string>;
+  EXPECT_EQ(notes(Slope(), "0.1", "5"),
+            Notes{"elevation grid: scale_factor 0.1 in its metadata is not applied, add_offset 5 in its "
+                  "metadata is not applied"});
+  EXPECT_EQ(Height(), "44.00");
+  EXPECT_EQ(notes(Slope(), "1", "0"), Notes{});
+  TestRaster packed = Slope();
+  packed.scale = static_cast<double>(0.1f);
+  packed.offset = 5.0;
+  EXPECT_EQ(notes(packed, "0.1", "5"), Notes{"elevation grid: heights are 0.1 times what is stored, and 5"});
+}
+
 // Each was read, a million numbers of each: for minutes. libtiff takes the first.
 TEST_F(RasterReadingTest, OfATagThatIsThereTwiceTheFirstCounts) {
   WriteRaster(folder.Path("g.tif"), Slope());

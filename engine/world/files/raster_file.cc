@@ -393,6 +393,16 @@ std::string RasterFile::Note() const {
   if (units_.height.m != 1.0) add(fmt::format("heights in {}", units_.height.name));
   if (scale_ != 1.0 || offset_ != 0.0)
     add(fmt::format("heights are {:g} times what is stored, and {:g}", scale_, offset_));
+  // Programs write them as metadata of the band alone; so does GDAL, of heights that were unpacked.
+  const auto compare = [&](const char* name, double applied) {
+    constexpr double kRounded = 1e-6;
+    const char* const text = band_->GetMetadataItem(name);
+    const double said = text == nullptr ? applied : CPLAtof(text);
+    if (std::abs(said - applied) > kRounded * std::abs(applied))
+      add(fmt::format("{} {:g} in its metadata is not applied", name, said));
+  };
+  compare("scale_factor", scale_);
+  compare("add_offset", offset_);
   if (band_->GetRasterDataType() == GDT_Byte && !signed_bytes_)
     add("heights of 8 bits, 0 .. 255 (a hillshade or another picture would look so, and is none)");
   return note;
