@@ -65,6 +65,18 @@ TEST(CsvDialectTest, ThousandsCommasAreRefused) {
     EXPECT_EQ(complaint(fmt::format("t;p\n0;1,023\n1;{}\n", sure)), "") << sure;
 }
 
+// Was a number, and so made sure that the commas of all others are decimal ones.
+TEST(CsvDialectTest, ACommaWithoutDecimalsIsNone) {
+  EXPECT_EQ(Complaint([] {
+              WithPoints("t;p\n0;1,023\n1;2,\n", {"t", "p"});
+            }).substr(0, 30),
+            "x.csv:2:3: p: '1,023': every n");
+  EXPECT_EQ(Complaint([] {
+              WithPoints("t;p\n0;1,5\n1;2,\n", {"t", "p"}).Number(1, 1, 0, 10);
+            }).substr(0, 32),
+            "x.csv:3:3: p: '2,' is not a numb");
+}
+
 TEST(CsvDialectTest, ColumnsThatAreNotReadTellNothingOfCommas) {
   for (const char* firmware : {"4.1", "1,4", "1,400"}) {
     const std::string text = fmt::format("t;p;firmware\n0,5;400,25;{}\n", firmware);

@@ -49,6 +49,7 @@ class NumberCells {
       if (!point_ && text.find('.') != std::string_view::npos && IsNumber(text)) point_ = {row, column};
       return;
     }
+    if (comma + 1 == text.size()) return;  // a number that is cut tells nothing of the others
     std::string with_point(text);
     with_point[comma] = '.';
     const bool thousands = MayBeThousands(text);
