@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <filesystem>
 #include <string>
@@ -113,7 +114,7 @@ TEST(InterruptTest, ALimitOfProcessorTimeIsToldLikeABatchSystemsSignal) {
         getrlimit(RLIMIT_CPU, &limit);
         limit.rlim_cur = 1;
         if (setrlimit(RLIMIT_CPU, &limit) != 0) _exit(1);
-        for (volatile int i = 0;;) i = 1;
+        for (std::atomic<int> turns = 0;;) ++turns;
       },
       ::testing::ExitedWithCode(75), "^ed3r: ended by SIGXCPU; the same command continues\n$");
 }
