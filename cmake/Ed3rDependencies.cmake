@@ -10,7 +10,7 @@ find_package(yaml-cpp REQUIRED)
 find_package(fmt REQUIRED)
 find_package(SQLite3 REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
-find_package(GDAL REQUIRED)
+find_package(GDAL 3.6 REQUIRED)  # the first that can be told to pass over its environment
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(embree 3 REQUIRED)

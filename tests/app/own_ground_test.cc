@@ -55,5 +55,38 @@ TEST(OwnGroundTest, ARunKeepsWhatStandsBesideItsGrid) {
   EXPECT_NE(again.out.find("identical"), std::string::npos) << again.out;
 }
 
+// GDAL's own way to keep side files in a folder of their own, and its configuration files.
+TEST(OwnGroundTest, WhatStandsBesideTheGridCountsAlone) {
+  const ScratchFolder scratch;
+  WriteGround(scratch / "mine");
+  const std::string world = "world " + (scratch / "mine" / "w.yaml").string();
+  const auto half = [&](const fs::path& file) {
+    std::ofstream(file)
+        << "<PAMDataset><PAMRasterBand band=\"1\"><Scale>0.5</Scale></PAMRasterBand></PAMDataset>";
+  };
+  const auto proxies = [&](const std::string& name, const std::string& of) {
+    fs::create_directories(scratch / name);
+    std::string header = "GDAL_PROXY        1";
+    header.resize(100, ' ');
+    std::ofstream(scratch / name / "gdal_pam_proxy.dat") << header << of << '\0' << "x.aux.xml" << '\0';
+    return "GDAL_PAM_PROXY_DIR=" + (scratch / name).string();
+  };
+  const std::string halving = proxies("halving", fs::canonical(scratch / "mine" / "g.asc").string());
+  half(scratch / "halving" / "x.aux.xml");
+  EXPECT_NE(Ed3r(world, halving).out.find("ground 0.0 .. 40.0 m"), std::string::npos)
+      << Ed3r(world, halving).out;
+
+  const std::string hiding = proxies("hiding", fs::canonical(scratch / "mine" / "g.asc").string());
+  std::ofstream(scratch / "hiding" / "x.aux.xml") << "<PAMDataset/>";
+  std::ofstream(scratch / "rc") << "[configoptions]\nGDAL_PAM_ENABLED=NO\n";
+  half(scratch / "mine" / "g.asc.aux.xml");
+  for (const std::string& environment : {std::string(), hiding, std::string("GDAL_PAM_ENABLED=NO"),
+                                         "GDAL_CONFIG_FILE=" + (scratch / "rc").string()}) {
+    const CommandResult told = Ed3r(world, environment);
+    EXPECT_NE(told.out.find("ground 0.0 .. 20.0 m"), std::string::npos)
+        << environment << told.out << told.err;
+  }
+}
+
 }  // namespace
 }  // namespace ed3r::app

@@ -3,6 +3,7 @@
 #include <cpl_conv.h>
 #include <cpl_error.h>
 #include <cpl_string.h>
+#include <cpl_vsi.h>
 #include <cpl_vsi_virtual.h>
 #include <gdal_frmts.h>
 #include <gdal_priv.h>
@@ -12,6 +13,7 @@
 #include <array>
 #include <cerrno>
 #include <mutex>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -49,32 +51,21 @@ void CloseVirtualFileSystems() {
   CSLDestroy(prefixes);
 }
 
-struct Option {
-  const char* name;
-  const char* value;
-};
+// What GDAL is told otherwise than it does by itself: without the first a GeoTIFF's vertical coordinate system, and so the
+// unit of its heights, is passed over; without the second a deprecated coordinate system is a warning.
+constexpr std::array<const char*, 3> kOptions = {"GTIFF_REPORT_COMPD_CS=YES", "OSR_USE_NON_DEPRECATED=NO",
+                                                 nullptr};
 
-// Those that change numbers, masks, units or where they are looked for. All but two as GDAL has them where nobody says
-// otherwise: without the first a GeoTIFF's vertical coordinate system, and so the unit of its heights, is passed over;
-// without the second a deprecated coordinate system is a warning. One thread, because complaints of others are lost.
-constexpr std::array<Option, 18> kOptions = {{{"GTIFF_REPORT_COMPD_CS", "YES"},
-                                              {"OSR_USE_NON_DEPRECATED", "NO"},
-                                              {"AAIGRID_DATATYPE", ""},
-                                              {"GDAL_DISABLE_READDIR_ON_OPEN", "NO"},
-                                              {"GDAL_GEOREF_SOURCES", "PAM,INTERNAL,TABFILE,WORLDFILE"},
-                                              {"GDAL_NUM_THREADS", "1"},
-                                              {"GDAL_PAM_ENABLED", "YES"},
-                                              {"GDAL_PAM_MODE", "PAM"},
-                                              {"GTIFF_DIRECT_IO", "NO"},
-                                              {"GTIFF_ESRI_CITATION", "YES"},
-                                              {"GTIFF_HONOUR_NEGATIVE_SCALEY", "NO"},
-                                              {"GTIFF_IGNORE_READ_ERRORS", "NO"},
-                                              {"GTIFF_IMPORT_FROM_EPSG", "YES"},
-                                              {"GTIFF_LINEAR_UNITS", "DEFAULT"},
-                                              {"GTIFF_POINT_GEO_IGNORE", "NO"},
-                                              {"GTIFF_SRS_SOURCE", ""},
-                                              {"GTIFF_VIRTUAL_MEM_IO", "NO"},
-                                              {"TIFF_READ_STREAMING", "NO"}}};
+// Dozens of variables change numbers, masks, units or where they are looked for, and each release has more: none is heard.
+// Called when the drivers are there, which have read the configuration files by then.
+void CloseEnvironment() {
+  std::string text = "[directives]\nignore-env-vars=yes\n";
+  const char* const file = "/vsimem/ed3r.gdalrc";  // the only way to say so
+  VSIFCloseL(VSIFileFromMemBuffer(file, reinterpret_cast<GByte*>(text.data()), text.size(), FALSE));
+  CPLLoadConfigOptionsFromFile(file, TRUE);
+  VSIUnlink(file);
+  CPLSetConfigOptions(nullptr);
+}
 
 // Said of good files, and of no number in them: units of a coordinate system that is not the registry's are compared with
 // the file's keys.
@@ -105,12 +96,13 @@ QuietGdal::QuietGdal() {
     CloseVirtualFileSystems();
     GDALRegister_AAIGrid();
     GDALRegister_GTiff();
+    CloseEnvironment();
     OSRSetPROJEnableNetwork(0);
   });
   CPLErrorReset();
   options_before_ = CPLGetThreadLocalConfigOptions();
-  for (const Option& option : kOptions) CPLSetThreadLocalConfigOption(option.name, option.value);
-  Forgive();  // what its own configuration file was told of
+  CPLSetThreadLocalConfigOptions(kOptions.data());
+  Forgive();  // what its configuration files were told of
 }
 
 QuietGdal::~QuietGdal() {

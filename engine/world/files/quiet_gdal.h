@@ -1,6 +1,7 @@
 // GDAL for the time of one object: it prints nothing, opens files of the disk alone, never asks a network, knows the two
-// formats that are read here, and reads them alike whatever the environment or its configuration file says. What it
-// complains of is kept: it goes on after most of it, without a scale, a mask or a coordinate system.
+// formats that are read here, and reads them alike: from the first object on, its environment variables and configuration
+// files count for nothing in the whole process. What it complains of is kept: it goes on after most of it, without a
+// scale, a mask or a coordinate system.
 // Threads: an object belongs to the thread that made it.
 #pragma once
 
