@@ -18,8 +18,6 @@ class Argument {
  public:
   explicit Argument(CLI::App* command, CLI::Option* option) : command_(command), option_(option) {}
   Argument& Required();
-  Argument& Path();  // not '': an empty path is a variable that was not set
-  Argument& NotEmpty(const std::string& allowed);
   Argument& OneValue();  // of a list: '--set A --set B', so that a positional argument may follow
   Argument& Range(std::int64_t low, std::int64_t high);
   Argument& Numbers(const std::string& shown);  // of a list: '1,4', '1 4' or the option twice
@@ -35,8 +33,9 @@ class CommandLine {
  public:
   explicit CommandLine(CLI::App* command) : command_(command) {}
 
-  // "--name", or "NAME" for a positional argument. `value`: std::string, int, std::int64_t, std::uint64_t or a std::vector of
-  // std::string or int. It holds the default, must outlive the parsing, and is changed only where the argument is given.
+  // "--name", or "NAME" for a positional argument. `value`: std::string, int, std::int64_t, std::uint64_t, double or a
+  // std::vector of std::string or int. It holds the default, must outlive the parsing, and is changed only where the argument
+  // is given. Refused: '', an option in the place of a value, and numbers that ParseNumber does not know.
   template <class Value>
   Argument Option(const std::string& name, Value& value, const std::string& about);
   Argument Flag(const std::string& name, bool& value, const std::string& about);
@@ -47,6 +46,9 @@ class CommandLine {
  private:
   CLI::App* command_;
 };
+
+// What main was given, the last word first, as CLI11 takes it.
+std::vector<std::string> Words(int argc, char** argv);
 
 class Program {
  public:

@@ -14,11 +14,11 @@
 #include <opencv2/core.hpp>
 #include <system_error>
 
+#include "engine/app/command_line.h"
 #include "engine/app/commands.h"
 #include "engine/app/commands/slurm.h"
 #include "engine/app/words.h"
 #include "engine/core/check.h"
-#include "engine/core/files/utf8.h"
 #include "engine/core/interrupt.h"
 #include "engine/core/message.h"
 #include "engine/core/version.h"
@@ -52,12 +52,6 @@ std::string Refusal(const CLI::App& program, const CLI::ParseError& error) {
                      suggestion.empty() ? "; 'ed3r --help' lists the commands" : suggestion);
 }
 
-// Arguments end up in notes, tables and JSON, which are UTF-8.
-void CheckArguments(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i)
-    if (!IsUtf8(argv[i])) throw UserError(fmt::format("ed3r: argument {} is not UTF-8 text", i));
-}
-
 std::string VersionText() {
   const CodeVersion code = ThisCode();
   return fmt::format("ed3r {} (commit {}{}, source {}, {})", code.release, code.commit,
@@ -71,8 +65,8 @@ int RunCommand(int argc, char** argv, CLI::App& program) {
   program.set_version_flag("--version", VersionText);
   const std::vector<Command> commands = AddCommands(program);
   try {
-    CheckArguments(argc, argv);
-    program.parse(argc, argv);
+    std::vector<std::string> words = Words(argc, argv);
+    program.parse(words);
     for (const Command& command : commands)
       if (command.parser.Chosen()) return command.run();
     return kBadInput;

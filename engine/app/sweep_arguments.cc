@@ -37,7 +37,7 @@ sweep::MissionsOverride ParseMissions(const std::string& text) {
 void SweepArguments::AddTo(CommandLine& parser) {
   parser.Option("SWEEP", file, "Sweep file (YAML)").Required();
   parser.Option("--set", set, "KEY=VALUE; wins over the file; 'ed3r params' lists the keys").OneValue();
-  parser.Option("--seed", seed, "Seed in place of the file's").NotEmpty("a whole number");
+  parser.Option("--seed", seed, "Seed in place of the file's");
   parser
       .Option("--missions", missions,
               "N or STAGE=N: missions per arm in place of the file's, in every stage or in one")

@@ -168,14 +168,23 @@ TEST_F(StoredFilesTest, AStoreThatThisUserMayNotReadIsNamedWithTheReason) {
                 "results.sqlite: cannot be read: Permission denied");
 }
 
-TEST(FilesTest, AnEmptyPathIsRefused) {
-  const std::string rbs = ED3R_SOURCE_DIR "/sweeps/rbs.yaml --missions 1 ";
-  for (const std::string& command :
-       {"run " + rbs + "--out ''", "run " + rbs + "--cache ''", std::string("report x --out ''"),
-        std::string("fit x --out ''"), std::string("frames --out ''"), std::string("world x --picture ''"),
-        std::string("replay x rbs/0 --out ''"), std::string("compare x y --out ''")})
-    ExpectOneLine(Ed3r(command), 2, "'' is not allowed; allowed: a path");
-  ExpectOneLine(Ed3r("run " + rbs + "--out="), 2, "--out: 1 required TEXT missing");
+// CLI11 reads words in brackets as lists: '[flat]' was the folder flat.
+TEST_F(StoredFilesTest, AFolderInBracketsIsItself) {
+  const fs::path folder = scratch_ / "work";
+  for (const char* name : {"flat", "[flat]", "[a,b]"}) fs::create_directories(folder / name);
+  for (const char* name : {"[flat]", "[a,b]"})
+    fs::copy(*flown_ / "run", folder / name, fs::copy_options::recursive);
+  const std::string there = "cd " + folder.string() + " &&";
+  const std::string digest = Ed3r("digest " + (*flown_ / "run").string()).out;
+  for (const char* name : {"'[flat]'", "'[a,b]'"}) {
+    const CommandResult merged = Ed3r(fmt::format("merge '[out]' {}", name), there);
+    EXPECT_EQ(merged.status, 0) << merged.err;
+    EXPECT_EQ(Ed3r("digest '[out]'", there).out, digest);
+    fs::remove_all(folder / "[out]");
+  }
+  EXPECT_EQ(Ed3r("compare '[flat]' '[a,b]'", there).status, 0);
+  ExpectOneLine(Ed3r("compare '[flat,x]' '[flat]'", there), 2, "[flat,x]");
+  ExpectOneLine(Ed3r("fit '[flat]'", there), 2, "[flat]");
 }
 
 TEST(FilesTest, ArgumentsAreText) {

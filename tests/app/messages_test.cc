@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
+#include <vector>
 
 #include "tests/app/command.h"
 
@@ -111,14 +113,54 @@ TEST(MessagesTest, ANumberIsWrittenInDigitsOrRefused) {
   const ScratchFolder scratch;
   const std::string out = (scratch / "run").string();
   const std::string run = fmt::format("run {} --missions 4 --out {} ", kRbs, out);
-  for (const char* threads : {"", "010", "0x2", " 2", "2.0", "-"})
-    ExpectRefusal(
-        fmt::format("{}--threads '{}'", run, threads),
-        fmt::format("ed3r: --threads: '{}' is not allowed; allowed: a whole number; 'ed3r --help' tells more",
-                    threads));
-  ExpectRefusal(run + "--seed ''",
-                "ed3r: --seed: '' is not allowed; allowed: a whole number; 'ed3r --help' tells more");
+  const auto refused = [](const std::string& command, const std::string& option, const std::string& value,
+                          const std::string& allowed) {
+    ExpectRefusal(fmt::format("{} {} '{}'", command, option, value),
+                  fmt::format("ed3r: {}: '{}' is not allowed; allowed: {}; 'ed3r --help' tells more", option,
+                              value, allowed));
+  };
+  for (const char* threads : {"010", "0x2", " 2", "2.0", "-", "2147483648", "99999999999999999999"})
+    refused(run, "--threads", threads, "a whole number up to 2147483647");
+  refused("replay x rbs/0", "--frames", "010", "a whole number up to 2147483647");
+  const std::string frames = "frames --out " + out;
+  for (const char* seed :
+       {"-1", "18446744073709551616", "99999999999999999999999", "-18446744073709551615", "0x1"})
+    refused(frames, "--seed", seed, "0 .. 18446744073709551615");
+  for (const char* wrong_by : {"1e-400", "1e400", " 0.5", "half"})
+    refused(frames, "--wrong-by", wrong_by, "a number");
   EXPECT_FALSE(fs::exists(out));
+}
+
+TEST(MessagesTest, AVariableThatIsNotSetIsNoValue) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "run").string(),
+                    fly = fmt::format("run {} --missions 4 --out {}", kRbs, out);
+  const std::string problem = " is not allowed; allowed: a value (was a variable not set?)";
+  const std::string more = "; 'ed3r --help' tells more";
+  for (const auto& [command, options] : std::map<std::string, std::vector<std::string>>{
+           {fly, {"--cache", "--stage", "--from", "--threads", "--shard", "--seed", "--set"}},
+           {"run " + kRbs, {"--out", "--missions"}},
+           {"status x", {"--stage", "--html", "--every"}},
+           {"report x", {"--out", "--variant", "--cache"}},
+           {"compare x y", {"--out"}},
+           {"replay x rbs/0", {"--out", "--video", "--frames", "--beside"}},
+           {"explain x rbs/0", {"--step"}},
+           {"slurm " + kRbs, {"--time", "--mem", "--partition", "--account", "--scratch", "--shards"}},
+           {"fit x", {"--format", "--battery", "--evaluate", "--out", "--perception", "--self-check"}},
+           {"world x", {"--picture"}},
+           {"detect x", {"--table"}},
+           {"frames --out " + out, {"--world", "--size", "--wrong-by", "--seed", "--views"}},
+           {"export x", {"--out"}}})
+    for (const std::string& option : options)
+      ExpectRefusal(fmt::format("{} {} ''", command, option), "ed3r: " + option + ": ''" + problem + more);
+  ExpectRefusal("fit --evaluate= x y", "ed3r: --evaluate: ''" + problem + more);
+  ExpectRefusal("digest ''", "ed3r: DIR: ''" + problem + more);
+  ExpectRefusal("compare x ''", "ed3r: DIR: ''" + problem + more);
+  ExpectRefusal(fmt::format("run {} --missions 4 --out --quiet", kRbs),
+                "ed3r: --out: '--quiet'" + problem + ", or ./--quiet for a path" + more);
+  EXPECT_FALSE(fs::exists(out));
+  EXPECT_FALSE(fs::exists("--quiet"));
+  EXPECT_EQ(Ed3r("digest -- --none").err, "--none: no such directory\n");
 }
 
 TEST(MessagesTest, AnOptionWithoutEffectIsRefused) {

@@ -217,10 +217,8 @@ Command AddCompare(Program& program) {
       "Runs of the same arms, each compared with the first: differences paired by scenario, and the paper's "
       "claims that are judged otherwise");
   parser.Option("DIR", options->dirs, "Run directories; shards in them count, merged or not").Required();
-  parser
-      .Option("--out", options->out,
-              "Folder for index.html, compare.txt, differences.csv, verdicts.csv and manifest.json")
-      .Path();
+  parser.Option("--out", options->out,
+                "Folder for index.html, compare.txt, differences.csv, verdicts.csv and manifest.json");
   parser.Flag(
       "--claims", options->claims,
       "Judge the paper's claims though a run flew another robot, world or parameter than the paper's");

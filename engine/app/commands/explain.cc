@@ -148,7 +148,7 @@ Command AddExplain(Program& program) {
   parser.Option("DIR", options->dir, "Run directory").Required();
   parser.Option("MISSION", options->mission, "ARM/NUMBER, e.g. ed3r-75/12; missions count from 0").Required();
   parser.Option("--step", options->step, "Timestep; timesteps count from 1").Required();
-  parser.Option("--cache", options->cache, "Where trained networks are kept; default results/cache").Path();
+  parser.Option("--cache", options->cache, "Where trained networks are kept; default results/cache");
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] { return Explain(*options); }};
 }

@@ -173,7 +173,7 @@ Command AddExport(Program& program) {
       "--networks", options->networks,
       "The networks that flew, for networks.rc and networks.robot of another sweep, and networks.csv: "
       "which arm flew which");
-  parser.Option("--out", options->out, "Folder to write to; default DIR/export").Path();
+  parser.Option("--out", options->out, "Folder to write to; default DIR/export");
   parser.Footer(
       "Columns have their units in their names; stage, arm, outcome, motion_rule and execution are words. "
       "Parquet is not "

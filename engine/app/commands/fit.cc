@@ -124,18 +124,15 @@ Command AddFit(Program& program) {
   parser.Option("--battery", options->battery,
                 "Of a raw log with several: NUMBER | all (sum of their powers)");
   parser.Option("--set", options->set, "robot.KEY=VALUE of the airframe that flew").OneValue();
-  parser
-      .Option("--out", options->out,
-              "Folder for report, fitted.yaml, flights.csv and rows.csv; with --perception for "
-              "perception.yaml, perception.json, looks.csv")
-      .Path();
+  parser.Option("--out", options->out,
+                "Folder for report, fitted.yaml, flights.csv and rows.csv; with --perception for "
+                "perception.yaml, perception.json, looks.csv");
   parser.Flag("--no-figures", options->no_figures, "With --out: draw nothing (no Python)");
   const std::vector<std::string> of_logs = {"LOG",        "--format",  "--evaluate", "--evaluate-format",
                                             "--skip-bad", "--battery", "--set",      "--no-figures"};
   parser
       .Option("--perception", options->perception,
               "Instead of LOG: fit the fast perception tier to a run of the pixel tier (run directory)")
-      .Path()
       .Excludes(of_logs);
   parser
       .Option("--self-check", options->self_check.fits,

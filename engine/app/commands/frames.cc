@@ -272,8 +272,7 @@ Command AddFrames(Program& program) {
   auto options = std::make_shared<Options>();
   CommandLine parser = program.AddCommand("frames", "Renders a labelled data set for training detectors");
   parser.Option("--out", options->out, "Folder for frames.npy, labels.csv, manifest.json and pictures")
-      .Required()
-      .Path();
+      .Required();
   parser
       .Option("--world", options->worlds,
               "World file (YAML), repeatable; default: training_a, training_b, training_c")

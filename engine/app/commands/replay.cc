@@ -192,13 +192,11 @@ Command AddReplay(Program& program) {
       "replay", "Flies a stored mission again, checks that it is identical, writes its trace and map");
   parser.Option("DIR", options->dir, "Run directory").Required();
   parser.Option("MISSION", options->mission, "ARM/NUMBER, e.g. rbs/12; missions count from 0").Required();
-  parser.Option("--out", options->out, "Folder for trace and map; default DIR/replay/MISSION").Path();
-  parser
-      .Option(
-          "--video", options->video,
-          "Also the mission as a film of about a minute at most, FILE.mp4: what the camera sees, with time, "
-          "SCS, battery and command, and the map from above")
-      .Path();
+  parser.Option("--out", options->out, "Folder for trace and map; default DIR/replay/MISSION");
+  parser.Option(
+      "--video", options->video,
+      "Also the mission as a film of about a minute at most, FILE.mp4: what the camera sees, with time, "
+      "SCS, battery and command, and the map from above");
   parser
       .Option("--frames", options->frames,
               "Also pictures of what the camera saw in these timesteps, from 1; e.g. 1,4 or 1 4")
@@ -207,7 +205,7 @@ Command AddReplay(Program& program) {
               "Also mission.html: the mission to watch in a browser, in one file that needs no network");
   parser.Option("--beside", options->beside,
                 "Another mission, shown beside it on the same clock (with --html)");
-  parser.Option("--cache", options->cache, "Where trained networks are kept; default results/cache").Path();
+  parser.Option("--cache", options->cache, "Where trained networks are kept; default results/cache");
   return {parser, [options] { return Replay(*options); }};
 }
 

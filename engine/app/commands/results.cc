@@ -121,7 +121,6 @@ Command AddStatus(Program& program) {
       .Excludes({"--json"});
   parser
       .Option("--html", watch->html, "Keeps writing a page that shows itself anew, until nothing is missing")
-      .Path()
       .Excludes({"--json"});
   auto every_s = std::make_shared<int>(0);  // 0: not given
   parser.Option("--every", *every_s, "Seconds between two looks of --watch and --html; default 5")
@@ -244,7 +243,7 @@ Command AddReport(Program& program) {
   CommandLine parser = program.AddCommand(
       "report", "Tables, figures and index.html of a run beside the paper's values, written to DIR/report");
   parser.Option("DIR", options->dir, "Run directory; shards in it count, merged or not").Required();
-  parser.Option("--out", options->out, "Folder to write to; default DIR/report").Path();
+  parser.Option("--out", options->out, "Folder to write to; default DIR/report");
   parser.Flag("--force", options->force, "Write into a folder that is neither empty nor a report, too");
   parser.Flag("--claims", options->claims,
               "Judge the paper's claims though another robot, world or parameter was flown than the paper's; "
@@ -259,7 +258,7 @@ Command AddReport(Program& program) {
               "Draw nothing (no Python); the figures' data are still written");
   parser.Flag("--no-missions", options->no_missions,
               "Fly no missions again to be watched; a few are otherwise, into DIR/report/missions");
-  parser.Option("--cache", options->cache, "Where trained networks are kept; default results/cache").Path();
+  parser.Option("--cache", options->cache, "Where trained networks are kept; default results/cache");
   parser.Flag("--json", options->json, "Print JSON");
   parser.Footer(
       "Figures are drawn by scripts/plot.py, found beside an installed program, in the source tree or in "

@@ -183,18 +183,15 @@ Command AddRun(Program& program) {
   CommandLine parser = program.AddCommand(
       "run", "Flies a sweep and prints its table; the same command again continues where it stopped");
   options->sweep.AddTo(parser);
-  parser.Option("--out", options->out, "Run directory; default results/runs/<sweep name>").Path();
-  parser.Option("--stage", options->stage, "Fly or train this stage alone").Path();
+  parser.Option("--out", options->out, "Run directory; default results/runs/<sweep name>");
+  parser.Option("--stage", options->stage, "Fly or train this stage alone");
   parser
       .Option("--from", options->from,
               "Run directory, only read, that holds the missions and networks that --stage builds on; "
               "default --out")
-      .Path()
       .Needs("--stage");
-  parser
-      .Option("--cache", options->cache,
-              "Where trained networks are kept for all sweeps; default results/cache")
-      .Path();
+  parser.Option("--cache", options->cache,
+                "Where trained networks are kept for all sweeps; default results/cache");
   parser.Option("--threads", options->threads, "Threads; 0, the default: all processors");
   parser.Option("--shard", options->shard,
                 "I/N: fly one of N parts, e.g. 1/4, counted from 1 to N or from 0 to N-1 (0/N is N/N); "

@@ -266,12 +266,10 @@ Command AddSlurm(Program& program) {
   CommandLine parser = program.AddCommand(
       "slurm", "Writes a sweep as batch scripts for Slurm, to be read, edited and submitted: RUN/slurm");
   options->sweep.AddTo(parser);
-  parser
-      .Option("--out", options->out,
-              "Run directory, on a disk that all nodes share; default results/runs/<sweep name>")
-      .Path();
-  parser.Option("--cache", options->cache, "Where trained networks are kept, likewise; default results/cache")
-      .Path();
+  parser.Option("--out", options->out,
+                "Run directory, on a disk that all nodes share; default results/runs/<sweep name>");
+  parser.Option("--cache", options->cache,
+                "Where trained networks are kept, likewise; default results/cache");
   parser.Option("--shards", options->shards, "Tasks of a stage's flights; default 16").Range(1, kMaxShards);
   parser.Option("--cpus-per-task", options->cpus, "Threads of a task; default 1").Range(1, 4096);
   parser.Option("--time", options->time,

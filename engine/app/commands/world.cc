@@ -124,8 +124,7 @@ Command AddWorld(Program& program) {
   CommandLine parser = program.AddCommand(
       "world", "Builds a world file, says what is in it, measures its sites and draws its map");
   parser.Option("FILE", options->file, "World file (YAML)").Required();
-  parser.Option("--picture", options->picture, "Draw the map (relief, trees, sites, stations) to this PNG")
-      .Path();
+  parser.Option("--picture", options->picture, "Draw the map (relief, trees, sites, stations) to this PNG");
   parser.Flag("--json", options->json, "Print JSON");
   return {parser, [options] {
             if (!options->picture.empty())
