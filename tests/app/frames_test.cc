@@ -122,6 +122,20 @@ TEST(FramesCommand, KeepsOnlyTheViewsThatADetectorMisjudges) {
   }
 }
 
+// Wherever it is called; a terminal is told how far it is, and a file is not.
+TEST(FramesCommand, TheShippedWorldsAreFound) {
+  const ScratchFolder scratch;
+  const CommandResult result = Ed3r("frames --out set --views 2 --frames 1 --pictures 0 --size 16x9",
+                                    "cd " + scratch.Path().string() + " &&");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  const auto manifest = nlohmann::json::parse(ReadAll(scratch / "set/manifest.json"));
+  EXPECT_EQ(manifest["worlds"].size(), 3u);
+  EXPECT_NE(
+      Ed3r("frames --out set --views 2", "ED3R_SWEEPS=/nowhere").err.find("/nowhere/worlds/training_a.yaml"),
+      std::string::npos);
+}
+
 TEST(FramesCommand, BadInputIsOneLineAndNothingIsWritten) {
   const ScratchFolder scratch;
   const std::filesystem::path out = scratch / "set";

@@ -14,6 +14,8 @@
 #include "engine/core/files/file.h"
 #include "engine/core/files/new_folder.h"
 #include "engine/core/files/remove_file.h"
+#include "engine/core/files/shipped.h"
+#include "engine/core/progress.h"
 #include "engine/core/sha256.h"
 #include "engine/core/version.h"
 #include "engine/perception/render/pictures.h"
@@ -34,8 +36,7 @@ constexpr perception::PictureSize kLarge{960, 540};
 
 struct Options {
   std::string out, size;
-  std::vector<std::string> worlds = {"sweeps/worlds/training_a.yaml", "sweeps/worlds/training_b.yaml",
-                                     "sweeps/worlds/training_c.yaml"};
+  std::vector<std::string> worlds;
   std::vector<std::string> settings;
   int views = 1000;
   int frames = 4;
@@ -120,7 +121,7 @@ class DataSet {
     CheckCount("--views", options.views, 1, kMaxViews);
     CheckCount("--frames", options.frames, 1, config.sensing.Frames());
     CheckCount("--pictures", options.pictures, 0, 1000);
-    for (const std::string& file : options.worlds) {
+    for (const std::string& file : Worlds()) {
       for (const char* output : {"frames.npy", "labels.csv", "manifest.json"})
         CheckNoInput(fs::path(options.out) / output, world::FilesOf(world::ReadWorldFile(file)), "--out");
       worlds_.push_back(world::Scene::Load(file));
@@ -143,13 +144,16 @@ class DataSet {
     std::string labels =
         "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label,tilt_deg,"
         "haze_range_m,sun_deg,cloud_cover,distractors\n";
+    ProgressLine line(stderr, false);
     int looks = 0;
     for (int kept = 0; kept < options_.views; ++looks) {
       if (looks == kMaxViews)
         throw UserError(
             fmt::format("--wrong-by: of {} views only {} are wrong by {}", looks, kept, options_.wrong_by));
+      line.Show(fmt::format("frames  {}/{} views, {} looked at", kept, options_.views, looks));
       if (WriteView(looks, kept, frames, labels)) ++kept;
     }
+    line.Clear();
     Sha256 of_labels;
     of_labels.Update(labels);
     files.Add(out / "labels.csv", labels);
@@ -165,6 +169,12 @@ class DataSet {
   }
 
  private:
+  std::vector<std::string> Worlds() const {
+    if (!options_.worlds.empty()) return options_.worlds;
+    const fs::path shipped = ShippedSweeps() / "worlds";
+    return {shipped / "training_a.yaml", shipped / "training_b.yaml", shipped / "training_c.yaml"};
+  }
+
   // Whether a detector's confidence in the first frame is as far from the truth as is asked for.
   bool Misjudged(const perception::SensingFrames& sensed) const {
     const perception::FrameStack& all = sensed.frames;
