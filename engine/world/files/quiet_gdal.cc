@@ -41,11 +41,11 @@ void CloseVirtualFileSystems() {
   // GDAL lets go of what it had; some serve two prefixes, so nobody may delete them, and who looks for leaks finds them here.
   static auto* const replaced = new std::vector<VSIFilesystemHandler*>;
   char** const prefixes = VSIGetFileSystemsPrefixes();
+  // GDAL keeps each to the end. NOLINTNEXTLINE(clang-analyzer-cplusplus.NewDeleteLeaks)
   for (char** prefix = prefixes; prefix != nullptr && *prefix != nullptr; ++prefix) {
     const std::string_view name(*prefix);
     if (!name.starts_with("/vsi") || name == "/vsimem/" || name == "/vsisubfile/") continue;
     replaced->push_back(VSIFileManager::GetHandler(*prefix));
-    // GDAL keeps it to the end. NOLINTNEXTLINE(clang-analyzer-cplusplus.NewDeleteLeaks)
     VSIFileManager::InstallHandler(*prefix, new NoFiles);
   }
   CSLDestroy(prefixes);
