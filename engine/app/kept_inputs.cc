@@ -1,19 +1,22 @@
 #include "engine/app/kept_inputs.h"
 
+#include <functional>
+
 #include "engine/core/check.h"
 #include "engine/schedule/training_stage.h"
 
 namespace ed3r::app {
 
-std::string DamageBesideMissions(store::ResultReader& reader, const std::string& dir) {
-  try {
-    reader.CheckViews();
-    reader.Files();
-    schedule::NetworkShelf::From(reader.Networks(), dir);
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "";
+std::vector<std::string> DamageBesideMissions(store::ResultReader& reader, const std::string& dir) {
+  const std::function<void()> checks[] = {[&] { reader.CheckViews(); }, [&] { reader.Files(); },
+                                          [&] { schedule::NetworkShelf::From(reader.Networks(), dir); }};
+  std::vector<std::string> lines;
+  for (const auto& check : checks) try {
+      check();
+    } catch (const UserError& error) {
+      lines.emplace_back(error.what());
+    }
+  return lines;
 }
 
 }  // namespace ed3r::app

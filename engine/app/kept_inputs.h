@@ -2,12 +2,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "engine/store/reader.h"
 
 namespace ed3r::app {
 
-// "" where they match their checksums, else the line that says what does not. `dir`: the run, for messages.
-std::string DamageBesideMissions(store::ResultReader& reader, const std::string& dir);
+// A line for each kind that does not match its checksums. `dir`: the run, for messages.
+std::vector<std::string> DamageBesideMissions(store::ResultReader& reader, const std::string& dir);
 
 }  // namespace ed3r::app

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/app/commands.h"
@@ -39,12 +41,26 @@ int TellTraining(const sweep::SweepPlan& plan, const std::string& stage, store::
   return untrained == 0 ? kDone : kMissionsFailed;
 }
 
+// The first; none where looking would take long.
+std::optional<store::DamagedMission> DamageOf(store::ResultReader& run, const std::string& stage) {
+  if (!run.Tables().checked() || !run.IsQuicklyCompared()) return std::nullopt;
+  for (store::DamagedMission& damage : run.FindDamage())
+    if (const auto id = run.Layout().Place(damage.run, damage.mission);
+        !id || run.Layout().stages[static_cast<std::size_t>(id->stage)].name == stage)
+      return std::move(damage);
+  return std::nullopt;
+}
+
 int TellFlights(const sweep::SweepPlan& plan, const sweep::Stage& stage, store::ResultReader& run) {
   const schedule::StageProgress progress =
       schedule::ProgressOf(plan, stage.name, run.Stored(), run.dir(), report::HalfWidth);
   if (progress.open.empty()) {
-    fmt::print("stage {}: finished\n", stage.name);
-    return kDone;
+    const std::optional<store::DamagedMission> damage = DamageOf(run, stage.name);
+    if (!damage) fmt::print("stage {}: finished\n", stage.name);
+    if (damage)
+      fmt::print("stage {}: damaged: {}: {}; 'ed3r verify' names all\n", stage.name, damage->name,
+                 damage->what);
+    return damage ? kFailedInside : kDone;
   }
   const std::vector<store::FailedMission> failures = run.Failures();
   const auto failed =

@@ -132,7 +132,9 @@ class SweepRun {
     store_ = store::ResultStore::Open(
         options.dir, with_foundation, layout_,
         {.other_code = options.accept_mixed ? store::OtherCode::kAccept : store::OtherCode::kRefuse,
-         .repair = options.repair && FliesAll() ? store::Repair::kYes : store::Repair::kNo,
+         .repair = !options.repair ? store::Repair::kNo
+                   : FliesAll()    ? store::Repair::kYes
+                                   : store::Repair::kOfAPart,
          .may_grow = !options.only_failed});
     RemoveLeftovers(options.dir);
     RemoveLeftovers(options.cache_dir);
@@ -188,17 +190,13 @@ class SweepRun {
     return options_.stage.empty() && options_.shard.count == 1 && !options_.only_failed;
   }
 
-  // What only a part is flown of loses nothing else: a mission that networks have learned from would be missing unseen.
-  void CheckFliesAgain(const store::DamagedMission& damage) const {
-    const auto id = layout_.Place(damage.run, damage.mission);  // none: in no plan
-    if (FliesAll() || (id && !options_.only_failed && InShard(layout_.LinearIndex(*id), options_.shard) &&
-                       (options_.stage.empty() ||
-                        plan_.stages[static_cast<std::size_t>(id->stage)].name == options_.stage)))
-      return;
-    throw UserError(
-        fmt::format("{}: {} is damaged: {}; --repair takes out only what the same call flies again, and this "
-                    "one does not: 'ed3r run SWEEP --repair' without --stage, --shard and --only-failed does",
-                    options_.dir, damage.name, damage.what));
+  // Once it is out: a mission that networks have learned from would be missing unseen, a round of a precision that is over is
+  // not flown again, and a stage that waits is not flown.
+  bool FliesAgain(const std::optional<sweep::RunId>& id) const {
+    if (FliesAll()) return true;
+    if (!id || options_.only_failed || !InShard(layout_.LinearIndex(*id), options_.shard)) return false;
+    const sweep::Stage& stage = plan_.stages[static_cast<std::size_t>(id->stage)];
+    return (options_.stage.empty() || stage.name == options_.stage) && !stage.precision && Ready(stage);
   }
 
   // Nothing is built on damaged missions, and a run that ends well leaves none behind.
@@ -208,7 +206,12 @@ class SweepRun {
     const std::vector<store::DamagedMission> damage = store_->FindDamage();
     if (damage.empty()) return;
     if (!options_.repair) throw UserError(store::DamageText(options_.dir, damage.front()));
-    std::for_each(damage.begin(), damage.end(), [&](const auto& mission) { CheckFliesAgain(mission); });
+    for (const auto& [run, mission, name, what] : damage)
+      if (!FliesAgain(layout_.Place(run, mission)))
+        throw UserError(fmt::format(
+            "{}: {} is damaged: {}; --repair takes out only what the same call flies again, and this "
+            "one does not: 'ed3r run SWEEP --repair' without --stage, --shard and --only-failed does",
+            options_.dir, name, what));
     CheckStageIsReady();
     store_->Remove(damage);
     summary_.repaired.insert(summary_.repaired.end(), damage.begin(), damage.end());

@@ -17,7 +17,7 @@ std::vector<DamagedMission> FindDamage(Connection& database, const RunLayout& la
                                        const std::function<void(const MissionCursor&)>& on_whole = {});
 
 // What to do with damaged missions where the plan grows over them.
-enum class Repair { kNo, kYes };
+enum class Repair { kNo, kYes, kOfAPart };  // the last: asked for, by a call that does not fly all of it
 
 // Deletes all that the file holds of these missions, so that they count as missing.
 void RemoveMissions(Connection& database, const std::vector<DamagedMission>& missions);

@@ -139,6 +139,7 @@ FileKind CheckFile(Connection& database, FileUse use) {
     throw UserError(fmt::format("{}: written by an older ed3r (format {}, this one reads 1 and up)",
                                 database.file(), version));
   CheckShape(database, static_cast<int>(version));
+  if (use == FileUse::kWrite) CheckIndexes(database);
   const RecordTables tables(database);
   if (version >= kChecksumsSince) CheckSeals(database);
   if (use == FileUse::kWrite && (version < kSchemaVersion || !tables.complete()))

@@ -144,6 +144,16 @@ void CheckTable(Connection& database, const TableShape& table, int version) {
 
 }  // namespace
 
+void CheckIndexes(Connection& database) {
+  Statement select(database,
+                   "SELECT name FROM sqlite_schema WHERE type = 'index' AND sql LIKE 'CREATE UNIQUE%'");
+  if (select.Step())
+    throw UserError(fmt::format(
+        "{0}: an ed3r file that somebody has changed: its index '{1}' allows a value only once, where "
+        "ed3r has no such index; 'DROP INDEX {1}' takes it away",
+        database.file(), select.Text(0)));
+}
+
 void CheckShape(Connection& database, int version) {
   RefuseForeignSchema(database);
   for (const TableShape& table : Tables()) CheckTable(database, table, version);

@@ -11,4 +11,7 @@ namespace ed3r::store {
 // (columns.h): checksums are over their names, too.
 void CheckShape(Connection& database, int version);
 
+// UserError for an index of somebody's that allows a value only once: what is to be written may have it twice.
+void CheckIndexes(Connection& database);
+
 }  // namespace ed3r::store

@@ -209,6 +209,12 @@ void StoreFile::CheckBeforeGrowth(Repair repair) {
   repaired_ = FindDamage(*database_, ReadLayout(*database_));
   if (repaired_.empty()) return;
   if (repair == Repair::kNo) throw UserError(DamageText(database_->file(), repaired_.front()));
+  if (repair == Repair::kOfAPart)
+    throw UserError(
+        fmt::format("{}: {} is damaged: {}; where a plan grows --repair goes without --stage, --shard and "
+                    "--only-failed, or "
+                    "repair it by the plan that it has",
+                    database_->file(), repaired_.front().name, repaired_.front().what));
   RemoveMissions(*database_, repaired_);
 }
 

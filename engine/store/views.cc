@@ -41,17 +41,25 @@ std::vector<std::pair<std::string, std::string>> Views() {
           {"named_timesteps", Definition<mission::TimestepRecord>("named_timesteps", "timesteps")}};
 }
 
-// "" where it has none of this name.
+// "" where no view has the name, which SQLite reads in any letters.
 std::string TextOf(Connection& database, const std::string& view) {
-  Statement select(database, "SELECT sql FROM sqlite_schema WHERE type = 'view' AND name = ?");
+  Statement select(database, "SELECT sql FROM sqlite_schema WHERE type = 'view' AND lower(name) = ?");
   select.Bind(0, view);
   return select.Step() ? select.Text(0) : "";
+}
+
+// Somebody's own table, such as one that was made of the view.
+bool IsTable(Connection& database, const std::string& name) {
+  Statement select(database, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND lower(name) = ?");
+  select.Bind(0, name);
+  return select.Step();
 }
 
 }  // namespace
 
 void PutViews(Connection& database) {
   for (const auto& [name, definition] : Views()) {
+    if (IsTable(database, name)) continue;
     if (TextOf(database, name) != definition)
       database.Execute(fmt::format("DROP VIEW IF EXISTS {}; {}", name, definition));
     PutRecipeValue(database, name, HashOf(definition));

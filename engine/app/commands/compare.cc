@@ -180,6 +180,10 @@ int Compare(const Options& options) {
       other_contents.push_back(std::move(line));
     if (!variants::VariantsOf(run.arms).empty())
       throw UserError(fmt::format("{}: has variants of its own; 'ed3r report {}' compares them", dir, dir));
+    if (provenance.mixed_code)
+      other_contents.push_back(
+          fmt::format("{}: several versions of the program flew it (--accept-mixed): {}.", label,
+                      provenance.code_version));
     departures[label] = report::ReadDepartures(reader)[""];
     for (metrics::ArmData& arm : variants::AsVariant(run.arms, label)) arms.push_back(std::move(arm));
     runs.push_back({label, std::move(run), std::move(provenance), std::move(plans), std::move(scene)});

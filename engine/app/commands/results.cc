@@ -45,9 +45,9 @@ struct Check {
   bool done = false;
   bool possible = true;  // false: without checksums
   std::vector<store::DamagedMission> damage;
-  std::string inputs;  // of what is kept besides missions
+  std::vector<std::string> beside;  // lines on what is kept besides missions
 
-  bool Whole() const { return damage.empty() && inputs.empty(); }
+  bool Whole() const { return damage.empty() && beside.empty(); }
 };
 
 Check CheckOf(store::ResultReader& reader) {
@@ -56,7 +56,7 @@ Check CheckOf(store::ResultReader& reader) {
   check.done = check.possible && reader.IsQuicklyCompared();
   if (!check.done) return check;
   check.damage = reader.FindDamage();
-  check.inputs = DamageBesideMissions(reader, reader.dir());
+  check.beside = DamageBesideMissions(reader, reader.dir());
   return check;
 }
 
@@ -69,8 +69,7 @@ void PrintStatusJson(store::ResultReader& reader, const Check& check) {
   object["damaged"] = nlohmann::ordered_json::array();
   for (const store::DamagedMission& damage : check.damage)
     object["damaged"].push_back({{"mission", damage.name}, {"problem", damage.what}});
-  object["other"] = nlohmann::ordered_json::array();
-  if (!check.inputs.empty()) object["other"].push_back(check.inputs);
+  object["other"] = check.beside;
   fmt::print("{}\n", object.dump(2));
 }
 
@@ -99,12 +98,12 @@ void PrintStatus(store::ResultReader& reader, const Check& check) {
         "again\n",
         Counted(std::ssize(check.damage), "mission"), check.damage.front().name, check.damage.front().what,
         reader.dir());
-  if (!check.inputs.empty()) fmt::print("{}\n", check.inputs);
+  for (const std::string& line : check.beside) fmt::print("{}\n", line);
 }
 
 // Results are of missions alone, and are whole where they are not damaged themselves.
 void TellDamageBesideMissions(store::ResultReader& reader, const std::string& dir) {
-  if (const std::string inputs = DamageBesideMissions(reader, dir); !inputs.empty()) Tell("note: {}", inputs);
+  for (const std::string& line : DamageBesideMissions(reader, dir)) Tell("note: {}", line);
 }
 
 }  // namespace

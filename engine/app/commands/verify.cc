@@ -44,8 +44,7 @@ void VerifyStore(const std::string& dir, Verification& found) {
           fmt::format("{}: {}, {}", dir, Counted(missions, "mission"), store::kNothingToCompare));
     for (store::DamagedMission& damage : reader.FindDamage())
       found.damage.push_back({dir, std::move(damage)});
-    if (std::string inputs = DamageBesideMissions(reader, dir); !inputs.empty())
-      found.other.push_back(std::move(inputs));
+    for (std::string& line : DamageBesideMissions(reader, dir)) found.other.push_back(std::move(line));
   } catch (const UserError& error) {
     // What is not there is bad input; what is there and cannot be read is what was asked.
     if (!std::filesystem::exists(std::filesystem::path(dir) / store::kResultsFile)) throw;
