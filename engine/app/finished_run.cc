@@ -15,7 +15,7 @@ namespace ed3r::app {
 namespace {
 
 // This very build, with this cache: what it prints may differ from what another one does.
-std::string ThisProgram(const std::string& cache) {
+std::string ThisCommand(const std::string& cache) {
   struct stat found = {};
   if (stat("/proc/self/exe", &found) != 0) return "";
   return fmt::format("{} {} {}.{:09} {}", ThisCode().source_hash, found.st_size, found.st_mtim.tv_sec,
@@ -36,7 +36,7 @@ bool SameRecipe(const sweep::SweepPlan& plan, store::ResultReader& reader) {
 bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const std::string& cache,
                      bool quiet) {
   try {
-    const std::string program = ThisProgram(cache);
+    const std::string program = ThisCommand(cache);
     const auto finished = program.empty() ? std::nullopt : store::RecallFinished(dir, program);
     if (!finished || (!quiet && finished->table.empty())) return false;
     store::ResultReader reader(dir);
@@ -64,7 +64,7 @@ bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const
 void RememberFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const std::string& cache,
                          const store::FileMoment& told, std::int64_t missions, const std::string& table,
                          const std::string& networks) {
-  const std::string program = ThisProgram(cache);
+  const std::string program = ThisCommand(cache);
   if (program.empty()) return;
   try {
     store::RememberFinished(dir, told, plan.CanonicalText(), {program, missions, table, networks});

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "engine/app/commands.h"
+#include "engine/app/words.h"
 #include "engine/core/files/file.h"
 #include "engine/core/interrupt.h"
 #include "engine/store/schema.h"
@@ -56,6 +57,13 @@ void Show(const std::string& text, bool first) {
   if (isatty(STDOUT_FILENO) && first) fmt::print("\x1b[2J\x1b[H");
   fmt::print("{}", text);
   std::fflush(stdout);
+}
+
+// Ctrl-C is how a look ends; a batch system asks why.
+int ToldInterruption() {
+  if (!AsksRequeue(InterruptSignal())) return kInterrupted;
+  Tell("ended by {}", SignalName(InterruptSignal()));
+  return kRequeue;
 }
 
 bool Sleep(int seconds) {
@@ -187,7 +195,7 @@ int WatchStatus(const WatchOptions& options) {
     if (options.terminal) Show(StatusText(look), first);
     if (!options.html.empty()) WriteFile(options.html, StatusPage(look, options.seconds));
     if (look.Missing() == 0) return kDone;
-    if (!Sleep(options.seconds)) return kInterrupted;
+    if (!Sleep(options.seconds)) return ToldInterruption();
   }
 }
 

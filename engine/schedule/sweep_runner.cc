@@ -206,13 +206,13 @@ class SweepRun {
     const std::vector<store::DamagedMission> damage = store_->FindDamage();
     if (damage.empty()) return;
     if (!options_.repair) throw UserError(store::DamageText(options_.dir, damage.front()));
+    CheckStageIsReady();
     for (const auto& [run, mission, name, what] : damage)
       if (!FliesAgain(layout_.Place(run, mission)))
         throw UserError(fmt::format(
             "{}: {} is damaged: {}; --repair takes out only what the same call flies again, and this "
             "one does not: 'ed3r run SWEEP --repair' without --stage, --shard and --only-failed does",
             options_.dir, name, what));
-    CheckStageIsReady();
     store_->Remove(damage);
     summary_.repaired.insert(summary_.repaired.end(), damage.begin(), damage.end());
   }
@@ -239,7 +239,7 @@ class SweepRun {
     store::ResultReader reader(options_.foundation);
     const store::Recipe& there = reader.StoredRecipe();
     if (there.plan_text == recipe_.plan_text) {
-      RefuseOther(reader);
+      CheckSame(reader);
     } else {
       const store::Growth growth = store::GrowthOf(there, recipe_, store::StagesWithNetworks(reader));
       if (!growth.Allowed()) RefuseOther(growth.difference);
@@ -258,7 +258,7 @@ class SweepRun {
                                 options_.foundation, difference));
   }
 
-  void RefuseOther(const store::ResultReader& reader) const {
+  void CheckSame(const store::ResultReader& reader) const {
     const store::Recipe& there = reader.StoredRecipe();
     if (const auto difference = store::Difference(there, recipe_)) RefuseOther(*difference);
     if (!options_.accept_mixed) RefuseOtherCode(options_.foundation, there.code, recipe_.code);
@@ -269,7 +269,7 @@ class SweepRun {
     if (StandsOnItself()) return store_->Stored();
     if (!HasFoundation()) return {};
     store::ResultReader reader(options_.foundation);
-    RefuseOther(reader);
+    CheckSame(reader);
     return reader.Stored();
   }
 

@@ -28,17 +28,18 @@ std::optional<std::pair<int, int>> ArmOf(const RunLayout& layout, std::int64_t r
 }
 
 // The seal is over all of them: those that are not put anew must be as they were put.
-void CheckRestMatches(Connection& database, const FlownNetworks& networks) {
-  if (NetworkFilesMatch(database)) return;
+bool MaySeal(Connection& database, const FlownNetworks& networks) {
+  if (NetworkFilesMatch(database)) return true;
   Statement there(database, "SELECT sha256 FROM networks");
   while (there.Step())
-    if (!networks.files.contains(there.Text(0))) FailNetworkFiles(database);
+    if (!networks.files.contains(there.Text(0))) return false;
+  return true;
 }
 
 }  // namespace
 
 void PutNetworks(Connection& database, const RunLayout& layout, const FlownNetworks& networks) {
-  CheckRestMatches(database, networks);
+  const bool may_seal = MaySeal(database, networks);
   // What is put is whole, whatever has become of what is there.
   Statement put_file(database,
                      "INSERT OR REPLACE INTO networks (sha256, name, model, checksum) VALUES (?, ?, ?, ?)");
@@ -66,7 +67,8 @@ void PutNetworks(Connection& database, const RunLayout& layout, const FlownNetwo
           layout.stages[static_cast<std::size_t>(use.stage)].arms[static_cast<std::size_t>(use.arm)].name,
           use.agent, there, use.sha256));
   }
-  SealNetworks(database);
+  SealUses(database);
+  if (may_seal) SealNetworkFiles(database);  // else what is damaged is still to be seen
 }
 
 FlownNetworks ReadNetworks(Connection& database, const RunLayout& layout) {

@@ -216,10 +216,9 @@ void ReplaceRecipe(Connection& database, const Recipe& recipe, const RunLayout& 
       "DELETE "
       "FROM runs");
   PutRecipe(database, recipe, layout, origins);
-  PutRecipeValue(database, kUsesKey, UsesChecksum(database));  // their arms have other numbers now
   // The networks are those of before: where they do not match their checksum, that is still to be seen.
   if (network_files) PutRecipeValue(database, kNetworkFilesKey, *network_files);
-  SealRecipe(database);
+  SealUses(database);  // their arms have other numbers now
 }
 
 void AddFailureKind(Connection& database) {
@@ -235,8 +234,12 @@ void ContinueRecipe(Connection& database, const Recipe& recipe) {
   AddSession(database, recipe, ReadOrigins(database));
 }
 
-void SealNetworks(Connection& database) {
+void SealUses(Connection& database) {
   PutRecipeValue(database, kUsesKey, UsesChecksum(database));
+  SealRecipe(database);
+}
+
+void SealNetworkFiles(Connection& database) {
   PutRecipeValue(database, kNetworkFilesKey, NetworkFilesChecksum(database));
   SealRecipe(database);
 }

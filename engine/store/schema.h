@@ -73,8 +73,10 @@ void CreateMissionsIndex(Connection& database);
 // Of a session that goes on with the same plan, perhaps by other code: adds what the file does not know of it.
 void ContinueRecipe(Connection& database, const Recipe& recipe);
 
-// Writes the checksums over networks and flown_networks, after a change of them. Files of before have none until then. Call it in a transaction.
-void SealNetworks(Connection& database);
+// Writes the checksum over flown_networks, or over networks, after a change of them. Files of before have none until then. Call
+// it in a transaction.
+void SealUses(Connection& database);
+void SealNetworkFiles(Connection& database);
 
 // Whether the networks have the names, hashes and checksums that they were put with.
 bool NetworkFilesMatch(Connection& database);

@@ -71,6 +71,8 @@ def scenes():
         Scene("fit", ("fit", "log.csv", "--out", "fitted", "--no-figures"), ("log.csv", "fitted"), "fitted", "report.txt"),
         Scene("frames", ("frames", "--out", "frames", "--views", "2", "--frames", "1", "--pictures", "1", "--size", "16x12", "--world",
                          "tiny_world.yaml"), ("tiny_world.yaml",), "frames", "manifest.json"),
+        Scene("frames (over)", ("frames", "--out", "pictures", "--views", "3", "--frames", "1", "--pictures", "2", "--size", "16x12", "--world",
+                                "tiny_world.yaml", "--seed", "2"), ("tiny_world.yaml", "pictures"), "pictures", "manifest.json"),
         Scene("detect", ("detect", "pictures", "--table", "table.csv"), ("pictures",)),
         Scene("replay", ("replay", "run", "ed3r-75/3", "--cache", "cache", "--out", "flown"), (*one, "flown"), "flown"),
         Scene("replay --html", ("replay", "run", "ed3r-75/3", "--cache", "cache", *PAGE, "--out", "flown"), (*one, "flown"), "flown",
@@ -237,7 +239,7 @@ def make_template(stage):
               ("compare", "half", "run", "--out", "compared"), ("fit", "other.csv", "--out", "fitted", "--no-figures"),
               (*watched, *(PAGE if viewer else ())),
               ("slurm", "tiny.yaml", "--out", "cluster", "--cache", "other", "--shards", "3"),
-              ("frames", "--out", "pictures", "--views", "2", "--frames", "1", "--pictures", "0", "--size", "16x12", "--world", "tiny_world.yaml")]
+              ("frames", "--out", "pictures", "--views", "2", "--frames", "1", "--pictures", "1", "--size", "16x12", "--world", "tiny_world.yaml")]
     for arguments in others:
         must(stage, workshop, arguments)
     for made in ("page", "exported", "compared", "fitted", "flown", "cluster", "pictures"):

@@ -17,6 +17,7 @@
 #include "engine/core/files/file.h"
 #include "engine/core/files/shipped.h"
 #include "engine/core/files/temporary_file.h"
+#include "engine/core/interrupt.h"
 
 extern char** environ;
 
@@ -66,6 +67,12 @@ int RunProgram(const std::vector<std::string>& command, const fs::path& errors) 
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+std::string WhyNoMessage(int status) {
+  constexpr int kEndedBySignal = 128;
+  return status > kEndedBySignal ? fmt::format("ended by {}", SignalName(status - kEndedBySignal))
+                                 : "no message";
+}
+
 }  // namespace
 
 DrawResult DrawFigures(const std::string& folder, const std::string& script_name) {
@@ -87,8 +94,9 @@ DrawResult DrawFigures(const std::string& folder, const std::string& script_name
   const std::string last = LastLine(said);
   if (status != 0 && status != kNoMatplotlib && status > 0) {
     WriteFile(log, said);
-    return {Drawing::kFailed, fmt::format("{} ({}; all of it in {})", last.empty() ? "no message" : last,
-                                          script.string(), log.string())};
+    return {Drawing::kFailed,
+            fmt::format("{} ({}; all of it in {})", last.empty() ? WhyNoMessage(status) : last,
+                        script.string(), log.string())};
   }
   std::error_code none;
   fs::remove(log, none);  // of an earlier drawing that failed

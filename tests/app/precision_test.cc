@@ -53,6 +53,28 @@ TEST(PrecisionTest, ArmsStopOnTheirOwnAndTheSameHoweverFlown) {
   EXPECT_EQ(Ed3r("digest " + again).out, digests[0]) << "the same command again flies nothing";
 }
 
+// Its round is over: what is taken out of it is not flown again.
+TEST(PrecisionTest, APartIsNotRepaired) {
+  const ScratchFolder scratch;
+  const std::string sweep = WriteSweep(scratch, "{metric: total_energy_kj, half_width: 2, every: 20}");
+  const std::string part = (scratch / "part").string();
+  const std::string fly = fmt::format("run {} --stage online --shard 1/2 --from {} --quiet --out {}", sweep,
+                                      (scratch / "whole").string(), part);
+  ASSERT_EQ(Ed3r(fly).status, 0);
+  const std::string damage = fmt::format(
+      "/usr/bin/python3 -c \"import sqlite3; d = sqlite3.connect('{}/results.sqlite'); d.execute('UPDATE "
+      "missions "
+      "SET total_j = 1 WHERE mission = (SELECT min(mission) FROM missions)'); d.commit()\"",
+      part);
+  ASSERT_EQ(std::system(damage.c_str()), 0);
+  const auto arms = nlohmann::json::parse(Ed3r("status --json " + part).out)["arms"];
+  const CommandResult refused = Ed3r(fly + " --repair");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("--repair takes out only what the same call flies again"), std::string::npos)
+      << refused.err;
+  EXPECT_EQ(nlohmann::json::parse(Ed3r("status --json " + part).out)["arms"], arms);
+}
+
 TEST(PrecisionTest, WhatCannotBeIsRefused) {
   const ScratchFolder scratch;
   const auto refusal = [&](const std::string& precision, const std::string& arguments = "") {

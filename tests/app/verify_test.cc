@@ -168,10 +168,20 @@ TEST(RepairTest, APartTakesNothingElseOut) {
   EXPECT_TRUE(Contains(Ed3r(fly + "--repair --stage second").err, "1 missions are missing or failed"));
   EXPECT_TRUE(Contains(Ed3r("verify " + run).out, "stage second, arm rbs, mission 3: "));
 
+  // Nor has one that waits.
+  for (const char* part : {"--shard 1/2", "--shard 2/2"}) {
+    EXPECT_EQ(Ed3r(fly + "--repair " + part).status, 2) << part;
+    EXPECT_TRUE(Contains(Ed3r("verify " + run).out, "stage second, arm rbs, mission 3: ")) << part;
+  }
   ASSERT_EQ(Ed3r(fly + "--repair --stage first --shard 2/2").status, 2);
   ASSERT_EQ(Ed3r(fly + "--repair").status, 0);
   EXPECT_EQ(Ed3r("digest " + run).out, whole);
   Sql(scratch / "run", "UPDATE missions SET total_j = 1 WHERE run = 1 AND mission = 3");
+  const CommandResult damaged = Ed3r("status --stage second " + run);
+  EXPECT_EQ(damaged.status, 1) << damaged.out;
+  EXPECT_TRUE(Contains(damaged.out, "stage second: damaged: stage second, arm rbs, mission 3: "))
+      << damaged.out;
+  EXPECT_EQ(Ed3r("status --stage first " + run).status, 0);
   EXPECT_TRUE(Contains(Ed3r(fly + "--repair --stage second").out, "repaired: stage second, arm "));
   EXPECT_EQ(Ed3r("digest " + run).out, whole);
 }

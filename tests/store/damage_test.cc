@@ -303,6 +303,43 @@ TEST(DamageTest, AViewThatTellsAnotherColumnIsNamedAndMadeAnew) {
   EXPECT_FALSE(select.Step());
 }
 
+TEST(DamageTest, AViewInOtherLettersIsTheSameViewAndATableOfItsNameIsSomebodysOwn) {
+  const TempDir temp;
+  WriteStore(temp / "letters", {{0, 0, 0}});
+  Sql(ResultsIn(temp / "letters"),
+      "DROP VIEW named_timesteps; CREATE VIEW Named_Timesteps AS SELECT 'x' AS stage");
+  EXPECT_TRUE(
+      Contains(UserErrorOf([&] { ResultReader(temp / "letters").CheckViews(); }), "view named_timesteps"));
+  WriteStore(temp / "letters", {{0, 0, 1}});
+  EXPECT_NO_THROW(ResultReader(temp / "letters").CheckViews());
+
+  WriteStore(temp / "table", {{0, 0, 0}});
+  Sql(ResultsIn(temp / "table"),
+      "CREATE TABLE mine AS SELECT * FROM named_missions; DROP VIEW named_missions; ALTER TABLE mine RENAME "
+      "TO "
+      "named_missions");
+  WriteStore(temp / "table", {{0, 0, 1}});
+  ResultReader reader(temp / "table");
+  EXPECT_NO_THROW(reader.CheckViews());
+  EXPECT_EQ(reader.CountMissions(), 2);
+}
+
+// Two sessions of one host would not fit.
+TEST(DamageTest, AnIndexThatAllowsAValueOnlyOnceIsNotWrittenUnder) {
+  const TempDir temp;
+  const std::string run = temp / "run";
+  WriteStore(run, {{0, 0, 0}});
+  Sql(ResultsIn(run), "CREATE INDEX mine ON sessions (host)");
+  WriteStore(run, {{0, 0, 1}});
+  Sql(ResultsIn(run),
+      "DROP INDEX mine; UPDATE sessions SET host = session; CREATE UNIQUE INDEX once ON sessions (host)");
+  EXPECT_EQ(ResultReader(run).CountMissions(), 2);
+  EXPECT_TRUE(Contains(UserErrorOf([&] {
+                         WriteStore(run, {{0, 0, 2}});
+                       }),
+                       "its index 'once' allows a value only once, where ed3r has no such index"));
+}
+
 TEST(DamageTest, AColumnThatSomebodyAddedIsLeftAlone) {
   const TempDir temp;
   const std::string run = temp / "run";

@@ -159,13 +159,12 @@ TEST(FlownNetworksTest, NetworksOfEachOthersNamesAreDamageUntilTheyArePutAgain) 
     EXPECT_TRUE(Contains(UserErrorOf([&] { MergeStores(temp / "new", {temp / "run"}); }), damage));
     // Somebody else's networks do not make these valid, nor none.
     WriteStore(temp / "other", {{2, 1, 1}});
-    EXPECT_TRUE(Contains(UserErrorOf([&] { MergeStores(temp / "run", {temp / "other"}); }), damage));
+    MergeStores(temp / "run", {temp / "other"});
+    EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader(temp / "run").Networks(); }), damage));
     FlownNetworks one = TwoNetworks();
     one.files.erase("bbbb");
     one.uses.pop_back();
-    EXPECT_TRUE(Contains(
-        UserErrorOf([&] { ResultStore::Open(temp / "run", TestRecipe(), TestLayout())->PutNetworks(one); }),
-        damage));
+    ResultStore::Open(temp / "run", TestRecipe(), TestLayout())->PutNetworks(one);
     EXPECT_TRUE(Contains(UserErrorOf([&] { ResultReader(temp / "run").Networks(); }), damage));
     ResultStore::Open(temp / "run", TestRecipe(), TestLayout())->PutNetworks(TwoNetworks());
     EXPECT_EQ(ResultReader(temp / "run").Networks().files.at("bbbb").name, "rc, seed 2");

@@ -135,6 +135,9 @@ TEST_F(RasterReadingTest, GdalsEnvironmentChangesNothing) {
                                                         {"AAIGRID_DATATYPE", "Int32"},
                                                         {"GTIFF_IGNORE_READ_ERRORS", "YES"},
                                                         {"GDAL_GEOREF_SOURCES", "NONE"},
+                                                        {"CPL_DEBUG", "ON"},
+                                                        {"CPL_DEBUG", "OFF"},
+                                                        {"CPL_DEBUG", ""},
                                                         {"GTIFF_HONOUR_NEGATIVE_SCALEY", "YES"}}) {
     SCOPED_TRACE(name);
     setenv(name.c_str(), value.c_str(), 1);

@@ -15,6 +15,7 @@
 #include "engine/core/files/new_folder.h"
 #include "engine/core/files/remove_file.h"
 #include "engine/core/files/shipped.h"
+#include "engine/core/files/temporary_file.h"
 #include "engine/core/progress.h"
 #include "engine/core/sha256.h"
 #include "engine/core/version.h"
@@ -158,9 +159,12 @@ class DataSet {
     of_labels.Update(labels);
     files.Add(out / "labels.csv", labels);
     files.Add(out / "manifest.json", Manifest(looks, frames.Hash(), of_labels.Hex()));
+    const TemporaryFolder pictures(out);  // what is there stays until all is made
+    for (const int view : pictured_) WritePictures(view, pictures.path());
     RemoveFile(out / "manifest.json");  // it comes last: where it is, all is of its set
     RemovePictures(out);
-    for (const int view : pictured_) WritePictures(view);
+    for (const fs::directory_entry& picture : fs::directory_iterator(pictures.path()))
+      fs::rename(picture.path(), out / picture.path().filename());
     files.Commit();
     fmt::print(
         "{}: frames.npy ({} views x {} frames, {} x {} px), labels.csv, manifest.json; fire or smoke in {} "
@@ -221,13 +225,13 @@ class DataSet {
   }
 
   // Rendered once more, as they are written when nothing can be refused any more.
-  void WritePictures(int view) const {
+  void WritePictures(int view, const fs::path& folder) const {
     const auto number = static_cast<std::uint32_t>(view);
     const perception::ViewPlan plan = perception::PlanView(scenes_, config_, options_.seed, number);
     const perception::Renderer renderer(scenes_[static_cast<std::size_t>(plan.world)], plan.site,
                                         config_.perception, config_.sensing, options_.seed, number);
     const perception::FrameStack frames = renderer.Sense(plan.pose, 1, numbers_, size_).frames;
-    const std::string stem = (fs::path(options_.out) / fmt::format("view_{:05}", view)).string();
+    const std::string stem = (folder / fmt::format("view_{:05}", view)).string();
     perception::WriteFrame(frames, 0, stem + ".png", size_.width_px <= 240 ? kEnlarged : 1);
     const int first[] = {0};
     perception::WriteFrame(renderer.Sense(plan.pose, 1, first, kLarge).frames, 0, stem + "_large.png");

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -85,6 +86,9 @@ bool IsHarmless(std::string_view message) {
 
 // GDAL prints its errors on stderr unless told otherwise; here they become part of ours.
 QuietGdal::QuietGdal() {
+  // Of each variable GDAL says that it is not heard, if CPL_DEBUG wants it said, for which it asks that variable, and says so of
+  // it: without end, were it there. Somebody's Python may have set it since.
+  unsetenv("CPL_DEBUG");
   CPLPushErrorHandlerEx(
       [](CPLErr kind, CPLErrorNum, const char* message) {
         if (kind == CE_Warning || kind == CE_Failure)
