@@ -294,7 +294,8 @@ TEST_F(RasterTest, ABandThatIsCalledAUnitIsAskedFor) {
        {std::pair("Elevation (ft)", "ft', 'us-ft'"), std::pair("DEM_feet", "ft', 'us-ft'"),
         std::pair("z usft", "ft', 'us-ft'"), std::pair("Elevation (dm)", "dm'"),
         std::pair("height_cm", "cm'"), std::pair("[mm]", "mm'"), std::pair("Height in decimeters", "dm'"),
-        std::pair("z: kilometres", "km'")}) {
+        std::pair("z: kilometres", "km'"), std::pair("elevation..ft.", "ft', 'us-ft'"),
+        std::pair("z.2020.feet", "ft', 'us-ft'")}) {
     raster.name = name;
     EXPECT_EQ(
         Message(raster),
@@ -313,7 +314,8 @@ TEST_F(RasterTest, ABandThatIsCalledAUnitIsAskedFor) {
                     name));
     ExpectSlope(*Load(raster, "    height_unit: m\n"), 10.0, 1.0);
   }
-  for (const char* name : {"Elevation (m)", "height_metres", "DEM", "DEM 10m", "Height in metres"}) {
+  for (const char* name :
+       {"Elevation (m)", "height_metres", "DEM", "DEM 10m", "DEM.10m.", "Height in metres", "soft.shift"}) {
     raster.name = name;
     ExpectSlope(*Load(raster), 10.0, 1.0);
   }

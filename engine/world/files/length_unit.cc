@@ -68,12 +68,14 @@ bool IsLetter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0;
 bool IsCapital(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
 bool IsSmall(char c) { return std::islower(static_cast<unsigned char>(c)) != 0; }
 
-// Whether a name ends in a number that the next word belongs to: "dbh_1.3", "DBH 1.3 ", but not "DEM 2020 ".
+// Whether a name ends in a number that the next word belongs to: "dbh_1.3", "DBH 1.3 ", but not "DEM 2020 ". Dots are gaps,
+// too: R makes "Height..ft." of "Height (ft)".
 bool IsMeasure(std::string_view before) {
-  const std::size_t end = before.find_last_not_of(' ') + 1;
+  const std::size_t end = before.find_last_not_of(" .") + 1;
   const std::size_t begin = before.substr(0, end).find_last_not_of("0123456789.") + 1;
   const std::string_view number = before.substr(begin, end - begin);
-  return !number.empty() && (end == before.size() || number.find('.') != std::string_view::npos);
+  const std::size_t digit = std::min(number.find_first_not_of('.'), number.size());
+  return digit < number.size() && (end == before.size() || number.find('.', digit) != std::string_view::npos);
 }
 
 // The unit that a word in lower case says, or "".
