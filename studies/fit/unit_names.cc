@@ -97,6 +97,13 @@ std::optional<double> QuotientOf(std::string_view word) {
   return std::nullopt;
 }
 
+// The words from first on as one. A letter before a whole speed is no prefix of its unit: vel_d_m_s is downwards.
+std::string Joined(const std::vector<std::string>& words, std::size_t first, std::size_t count) {
+  std::string rest;
+  for (std::size_t i = 1; i < count; ++i) rest += words[first + i];
+  return words[first].size() == 1 && QuotientOf(rest) ? "" : words[first] + rest;
+}
+
 }  // namespace
 
 std::optional<std::pair<std::string, double>> OtherUnit(std::string_view meaning, std::string_view name) {
@@ -106,8 +113,7 @@ std::optional<std::pair<std::string, double>> OtherUnit(std::string_view meaning
     const std::vector<std::string> words = WordsOf(name, capitals);
     for (std::size_t count = speed ? kMostWords : 1; count > 0; --count)
       for (std::size_t first = 0; first + count <= words.size(); ++first) {
-        std::string word;
-        for (std::size_t i = 0; i < count; ++i) word += words[first + i];
+        const std::string word = Joined(words, first, count);
         std::optional<double> factor = count == 1 ? FactorOf(meaning, word) : std::nullopt;
         if (!factor && speed) factor = QuotientOf(word);
         if (factor && *factor != 1.0) return std::pair{word, *factor};

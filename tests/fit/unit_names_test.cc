@@ -141,6 +141,8 @@ TEST(UnitNamesTest, NamesThatMerelyHaveSuchLettersAreTaken) {
                            "hkmhs", "speed_mps", "speed m/sec", "v_metres_per_second", "metersPerSecond",
                            "ins_speed", "min_speed", "speed_ms_h", "speed_m_h", "kms_speed"})
     EXPECT_EQ(Says("airspeed_mps", name), "") << name;
+  for (const char* name : {"vel_d_m_s", "vel_n_m_s", "vel_d_mps", "velD_ms", "V_m (m/s)", "vz_c m s-1"})
+    EXPECT_EQ(Says("climb_mps", name), "") << name;
   for (const char* name : {"time_m_s", "Time (s)", "timestamp"}) EXPECT_EQ(Says("time_s", name), "") << name;
   for (const char* name : {"power_w", "PowerW", "maximum"}) EXPECT_EQ(Says("power_w", name), "") << name;
   for (const char* name : {"shift", "aftAltitude", "cmd"}) EXPECT_EQ(Says("altitude_m", name), "") << name;
