@@ -117,8 +117,9 @@ def read_rendered(folder: pathlib.Path) -> DataSet:
     for column in ("view", "world", "distance_m", "fire_px", "smoke_px", "occluded", "label"):
         if rows and column not in rows[0]:
             raise DataError(f"{folder}/labels.csv: has no column {column}")
-    if rows and "index" in rows[0] and any(float(row["index"]) < float(above["index"]) for above, row in zip(rows, rows[1:])):
-        raise DataError(f"{folder}/labels.csv: its rows are not in the order of their frames; sort them by index")
+    index = next((column for column in rows[0] if column.lower() == "index"), None) if rows else None
+    if index and any(float(row[index]) <= float(above[index]) for above, row in zip(rows, rows[1:])):
+        raise DataError(f"{folder}/labels.csv: its rows are not in the order of their frames, each once; sort them by index")
     number = {key: np.array([float(row[key]) for row in rows]) for key in ("distance_m", "fire_px", "smoke_px",
                                                                          "occluded", "label")}
     if not np.isin(number["label"], (0, 1)).all():

@@ -24,19 +24,24 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMaxFrameBytes = std::uintmax_t{16} << 30;
 
-// Frames and rows go together by their order alone: a table that was sorted otherwise would label other frames.
+// Frames and rows go together by their order alone: a table that was sorted otherwise, or that has one row twice and
+// lacks another, would label other frames.
 void CheckOrder(const CsvTable& table) {
-  const auto column = std::find(table.columns().begin(), table.columns().end(), "index");
+  const auto is_index = [](std::string name) {
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    return name == "index";
+  };
+  const auto column = std::find_if(table.columns().begin(), table.columns().end(), is_index);
   if (column == table.columns().end()) return;
   const auto index = static_cast<std::size_t>(column - table.columns().begin());
   constexpr double kBig = 1e9;
-  double above = 0.0;
+  double above = -1.0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double number = table.Number(row, index, 0, kBig);
-    if (number < above)
-      throw UserError(
-          fmt::format("{}{} stands below {}; allowed: rows in the order of their frames; sort them by index",
-                      table.Where(row, index), table.Cell(row, index), table.Cell(row - 1, index)));
+    if (number <= above)
+      throw UserError(fmt::format(
+          "{}{} stands below {}; allowed: rows in the order of their frames, each once; sort them by index",
+          table.Where(row, index), table.Cell(row, index), table.Cell(row - 1, index)));
     above = number;
   }
 }

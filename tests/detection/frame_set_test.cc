@@ -125,8 +125,16 @@ TEST_F(FrameSetTest, RefusesLabelsInAnotherOrder) {
   const std::string names = "index,view,frame,world,site,distance_m,fire_px,smoke_px,occluded,label\n";
   WriteLabels(names + "1,7,1,a,x,12.5,0,0,0,0\n0,7,0,a,x,12.5,3,4,0.25,1\n");
   ExpectRefusal(
-      "labels.csv:3:1: index: 0 stands below 1; allowed: rows in the order of their frames; sort them by "
-      "index");
+      "labels.csv:3:1: index: 0 stands below 1; allowed: rows in the order of their frames, each once; "
+      "sort them by index");
+  WriteLabels(names + "0,7,0,a,x,12.5,0,0,0,0\n0,7,0,a,x,12.5,3,4,0.25,1\n");
+  ExpectRefusal(
+      "labels.csv:3:1: index: 0 stands below 0; allowed: rows in the order of their frames, each once; "
+      "sort them by index");
+  std::string capital = names;
+  capital.front() = 'I';
+  WriteLabels(capital + "1,7,1,a,x,12.5,0,0,0,0\n0,7,0,a,x,12.5,3,4,0.25,1\n");
+  ExpectRefusal("labels.csv:3:1: Index: 0 stands below 1; allowed: rows in the order of their frames");
   WriteLabels(names + "3,7,1,a,x,12.5,0,0,0,0\n8,7,0,a,x,12.5,3,4,0.25,1\n");  // frames of a larger set
   EXPECT_TRUE(ReadFrameSet(folder_).labels[1].positive);
 }
