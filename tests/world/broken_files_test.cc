@@ -169,7 +169,8 @@ TEST_F(BrokenFiles, Grids) {
             "w.yaml:6:11: terrain.grid.file: 'none.asc': cannot be read: No such file or directory");
   EXPECT_EQ(GridMessage("    file: text.asc\n"),
             "w.yaml:6:11: terrain.grid.file: 'text.asc': not readable as an ESRI ASCII grid or a GeoTIFF "
-            "(`text.asc' not recognized as a supported file format.)");
+            "(`text.asc' not recognized as a supported file format.); a text grid must begin with 'ncols', "
+            "without a byte order mark, blank or line before it");
   EXPECT_EQ(GridMessage("    file: cut.asc\n"),
             "w.yaml:6:11: terrain.grid.file: 'cut.asc': 3 heights, 3 a line, but its header says ncols 11 "
             "and nrows 9, "

@@ -61,15 +61,7 @@ RasterFile::RasterFile(const GridTerrainSpec& spec) : spec_(spec), gdal_(std::ma
   gdal_->dataset.reset(
       GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, kDrivers));
   dataset_ = gdal_->dataset.get();
-  if (dataset_ == nullptr) {
-    // So it says where the first lines of heights begin with nan.
-    const bool letters = QuietGdal::LastError().find("find data values") != std::string::npos;
-    Fail(fmt::format("not readable as an ESRI ASCII grid or a GeoTIFF ({}){}", QuietGdal::LastError(),
-                     letters
-                         ? "; write a number where its heights begin, and no letter: NODATA_value -9999, and "
-                           "-9999 for nan"
-                         : ""));
-  }
+  if (dataset_ == nullptr) FailToOpen();
   CheckComplaints();
   CheckBands();
   band_ = dataset_->GetRasterBand(1);
@@ -87,6 +79,17 @@ RasterFile::~RasterFile() = default;
 
 void RasterFile::Fail(const std::string& problem) const {
   FailAt(spec_.file_place, fmt::format("terrain.grid.file: '{}': {}", spec_.file, problem));
+}
+
+void RasterFile::FailToOpen() const {
+  const std::string error = QuietGdal::LastError();
+  const auto says = [&](const char* words) { return error.find(words) != std::string::npos; };
+  std::string mend;
+  if (says("find data values"))  // so it says where the first lines of heights begin with nan
+    mend = "; write a number where its heights begin, and no letter: NODATA_value -9999, and -9999 for nan";
+  else if (says("not recognized"))
+    mend = "; a text grid must begin with 'ncols', without a byte order mark, blank or line before it";
+  Fail(fmt::format("not readable as an ESRI ASCII grid or a GeoTIFF ({}){}", error, mend));
 }
 
 // GDAL goes on without what it could not read: a scale, a unit, a coordinate system, a part of the heights.

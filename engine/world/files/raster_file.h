@@ -50,6 +50,7 @@ class RasterFile {
  private:
   class Gdal;
 
+  [[noreturn]] void FailToOpen() const;
   [[noreturn]] void Fail(const std::string& problem) const;
   void CheckComplaints() const;
   void OpenAlone();
