@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <vector>
 
 namespace ed3r::fit {
@@ -52,6 +53,14 @@ constexpr UnitWord kUnitWords[] = {{"_s", 1e-9, " ns nsec nanosecond nanoseconds
                                    {"_kg", 0.453592, " lb lbs pound pounds "},
                                    {"_kg", 0.0283495, " oz ounce ounces "}};
 
+// What a unit is written to without a gap: groundspeedkmh, heightft. The short ones are whole names besides, as many words
+// end in them.
+constexpr std::string_view kQuantities[] = {
+    "speed",   "spd",      "velocity", "vel",       "climb",  "rate",    "vario", "height",
+    "hgt",     "altitude", "alt",      "elevation", "elev",   "agl",     "time",  "timestamp",
+    "voltage", "current",  "power",    "mass",      "weight", "payload", "load"};
+constexpr std::string_view kShortQuantities = " v vs gs tas ias cas ht ";
+
 // Whether a capital after a small letter begins a word, as in speedKmh but not in power_kW.
 enum class Capitals { kPlain, kBeginWords };
 
@@ -97,6 +106,23 @@ std::optional<double> QuotientOf(std::string_view word) {
   return std::nullopt;
 }
 
+// Another unit that a word ends in behind a quantity, and its factor. One letter is none, and dm of veldms is downwards, in
+// metres.
+std::optional<std::pair<std::string, double>> BehindQuantity(std::string_view meaning,
+                                                             std::string_view word) {
+  for (std::size_t begin = 1; begin + 1 < word.size(); ++begin) {
+    const std::string_view head = word.substr(0, begin), tail = word.substr(begin);
+    const bool quantity = std::any_of(std::begin(kQuantities), std::end(kQuantities),
+                                      [&](std::string_view name) { return head.ends_with(name); }) ||
+                          kShortQuantities.find(fmt::format(" {} ", head)) != std::string_view::npos;
+    if (!quantity || tail.starts_with("dm")) continue;
+    std::optional<double> factor = FactorOf(meaning, tail);
+    if (!factor && meaning.ends_with("_mps")) factor = QuotientOf(tail);
+    if (factor && *factor != 1.0) return std::pair{std::string(tail), *factor};
+  }
+  return std::nullopt;
+}
+
 // The words from first on as one. A letter before a whole speed is no prefix of its unit: vel_d_m_s is downwards.
 std::string Joined(const std::vector<std::string>& words, std::size_t first, std::size_t count) {
   std::string rest;
@@ -117,6 +143,8 @@ std::optional<std::pair<std::string, double>> OtherUnit(std::string_view meaning
         std::optional<double> factor = count == 1 ? FactorOf(meaning, word) : std::nullopt;
         if (!factor && speed) factor = QuotientOf(word);
         if (factor && *factor != 1.0) return std::pair{word, *factor};
+        if (count > 1) continue;
+        if (const auto behind = BehindQuantity(meaning, word)) return behind;
       }
   }
   return std::nullopt;

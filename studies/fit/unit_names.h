@@ -8,7 +8,7 @@
 
 namespace ed3r::fit {
 
-// The word of a name that says another unit than ours for `meaning` (speed_kmh, Speed [km h-1], time(ms)), and the factor
+// The word of a name that says another unit than ours for `meaning` (speed_kmh, Speed [km h-1], speedkmh), and the factor
 // from it, 0 where none makes ours of it; or none.
 std::optional<std::pair<std::string, double>> OtherUnit(std::string_view meaning, std::string_view name);
 

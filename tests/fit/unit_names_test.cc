@@ -41,6 +41,13 @@ TEST(UnitNamesTest, OtherUnitsAreHeardHoweverTheyAreSpelt) {
         {"Speed (km/h)", "0.277778"},
         {"speed/km/h", "0.277778"},
         {"speedKmh", "0.277778"},
+        {"speedkmh", "0.277778"},
+        {"groundspeedkph", "0.277778"},
+        {"SPEEDMPH", "0.44704"},
+        {"speedknots", "0.514444"},
+        {"gskts", "0.514444"},
+        {"velcms", "0.01"},
+        {"speedfts", "0.3048"},
         {"Kilometres per hour", "0.277778"},
         {"speed_ft_s", "0.3048"},
         {"speed ft s-1", "0.3048"},
@@ -73,18 +80,25 @@ TEST(UnitNamesTest, OtherUnitsAreHeardHoweverTheyAreSpelt) {
       {"current_a", {{"current_cA", "0.01"}}},
       {"ground_speed_mps", {{"gs (kn)", "0.514444"}}},
       {"time_s", {{"time [h]", "3600"}}},
-      {"climb_mps", {{"vs_ft_min", "0.00508"}, {"vs (ft/min)", "0.00508"}, {"vs m min-1", "0.0166667"}}},
-      {"power_w", {{"power_kW", "1000"}, {"powerKw", "1000"}, {"Power [mW]", "0.001"}}},
+      {"climb_mps",
+       {{"vs_ft_min", "0.00508"},
+        {"vs (ft/min)", "0.00508"},
+        {"vs m min-1", "0.0166667"},
+        {"climbratefpm", "0.00508"},
+        {"varioftmin", "0.00508"}}},
+      {"power_w", {{"power_kW", "1000"}, {"powerKw", "1000"}, {"powerkw", "1000"}, {"Power [mW]", "0.001"}}},
       {"altitude_m",
        {{"alt_ft", "0.3048"},
         {"AltitudeFt", "0.3048"},
+        {"heightft", "0.3048"},
+        {"GPSALTFEET", "0.3048"},
         {"alt (cm)", "0.01"},
         {"alt (yd)", "0.9144"},
         {"alt_fathoms", "1.8288"},
         {"alt inches", "0.0254"},
         {"alt [dm]", "0.1"},
         {"alt nmi", "1852"}}},
-      {"payload_kg", {{"load (g)", "0.001"}, {"loadLbs", "0.453592"}}}};
+      {"payload_kg", {{"load (g)", "0.001"}, {"loadLbs", "0.453592"}, {"payloadlbs", "0.453592"}}}};
   for (const auto& [meaning, names] : factors)
     for (const auto& [name, factor] : names) {
       const std::string message = Says(meaning, name);
@@ -141,11 +155,15 @@ TEST(UnitNamesTest, NamesThatMerelyHaveSuchLettersAreTaken) {
                            "hkmhs", "speed_mps", "speed m/sec", "v_metres_per_second", "metersPerSecond",
                            "ins_speed", "min_speed", "speed_ms_h", "speed_m_h", "kms_speed"})
     EXPECT_EQ(Says("airspeed_mps", name), "") << name;
-  for (const char* name : {"vel_d_m_s", "vel_n_m_s", "vel_d_mps", "velD_ms", "V_m (m/s)", "vz_c m s-1"})
+  for (const char* name : {"vel_d_m_s", "vel_n_m_s", "vel_d_mps", "velD_ms", "V_m (m/s)", "vz_c m s-1",
+                           "veldms", "climbms", "lifts", "shifts", "driftspeed", "speedmin", "lymph"})
     EXPECT_EQ(Says("climb_mps", name), "") << name;
   for (const char* name : {"time_m_s", "Time (s)", "timestamp"}) EXPECT_EQ(Says("time_s", name), "") << name;
-  for (const char* name : {"power_w", "PowerW", "maximum"}) EXPECT_EQ(Says("power_w", name), "") << name;
-  for (const char* name : {"shift", "aftAltitude", "cmd"}) EXPECT_EQ(Says("altitude_m", name), "") << name;
+  for (const char* name : {"power_w", "PowerW", "maximum", "powerwatts", "powermean"})
+    EXPECT_EQ(Says("power_w", name), "") << name;
+  for (const char* name : {"shift", "aftAltitude", "cmd", "left", "aircraft", "draft", "soft", "lift",
+                           "altmetres", "heightm", "altimeter"})
+    EXPECT_EQ(Says("altitude_m", name), "") << name;
 }
 
 }  // namespace

@@ -188,17 +188,22 @@ TEST_F(StemMapTest, AColumnIsNotMappedAgainstTheUnitOfItsName) {
   for (const auto& [header, unit] :
        {std::pair("HT_FT", "ft"), std::pair("heightFeet", "ft"), std::pair("Height (yd)", "yd"),
         std::pair("h [cm]", "cm"), std::pair("h_chains", "chains"), std::pair("Height..ft.", "ft"),
-        std::pair("Ht.ft", "ft"), std::pair("HT.feet", "ft"), std::pair("Height.2020..ft.", "ft")})
+        std::pair("Ht.ft", "ft"), std::pair("heightft", "ft"), std::pair("HEIGHTFT", "ft"),
+        std::pair("treeheightfeet", "ft"), std::pair("htft", "ft"), std::pair("hgtcm", "cm"),
+        std::pair("HT.feet", "ft"), std::pair("Height.2020..ft.", "ft")})
     EXPECT_EQ(says("height_m", header), refused("height_m", header, unit));
   for (const auto& [header, unit] :
        {std::pair("DBH in", "in"), std::pair("d_mm", "mm"), std::pair("DBH..in.", "in"),
-        std::pair("dbh.inches", "inches"), std::pair("dbh.mm", "mm")})
+        std::pair("dbh.inches", "inches"), std::pair("dbh.mm", "mm"), std::pair("DBHin", "in"),
+        std::pair("dbhinches", "inches")})
     EXPECT_EQ(says("dbh_cm", header), refused("dbh_cm", header, unit));
-  for (const char* header : {"DBH", "DBH_1.3m", "DBH (cm) in 2020", "DBH at 1.3 m", "DBH_cm", "dbh_1.3m",
-                             "DBH..1.3.m.", "DBH.1.3..m.", "DBH..cm.", "DBH..cm..at.1.3.m"})
+  for (const char* header :
+       {"DBH", "DBH_1.3m", "DBH (cm) in 2020", "DBH at 1.3 m", "DBH_cm", "dbh_1.3m", "DBH..1.3.m.",
+        "DBH.1.3..m.", "DBH..cm.", "DBH..cm..at.1.3.m", "Diameter", "diameters", "dbhcm", "dbhm", "weight"})
     EXPECT_EQ(says("dbh_cm", header), "no error") << header;
   for (const char* header : {"HT", "height in metres", "shift_top", "Height in 2019", "Chain height",
-                             "H_Mile_Stand", "Height..m.", "left", "aircraft", "soft", "lift"})
+                             "H_Mile_Stand", "Height..m.", "left", "aircraft", "soft", "lift", "draft",
+                             "heightm", "htmetres", "shift", "heightindex", "weight", "altitude"})
     EXPECT_EQ(says("height_m", header), "no error") << header;
 }
 

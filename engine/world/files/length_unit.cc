@@ -64,6 +64,12 @@ constexpr std::array<std::string_view, 6> kOthers = {"yd", "yds", "yard", "yards
 constexpr std::array<std::string_view, 11> kOthersAtTheEnd = {
     "in", "fathom", "fathoms", "furlong", "furlongs", "chain", "chains", "nautical", "nmi", "mile", "miles"};
 
+// What a unit is written to without a gap: "heightft". The short ones are whole names besides, as many words end in them.
+constexpr std::array<std::string_view, 11> kQuantities = {"height",   "hgt",     "elevation", "elev",
+                                                          "altitude", "alt",     "dbh",       "diameter",
+                                                          "diam",     "easting", "northing"};
+constexpr std::array<std::string_view, 3> kShortQuantities = {"ht", "x", "y"};
+
 bool IsLetter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool IsCapital(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
 bool IsSmall(char c) { return std::islower(static_cast<unsigned char>(c)) != 0; }
@@ -87,6 +93,20 @@ std::string UnitOfWord(const std::string& word, bool ends_the_name) {
     return std::find(words.begin(), words.end(), word) != words.end();
   };
   return is_of(kOthers) || (ends_the_name && is_of(kOthersAtTheEnd)) ? word : "";
+}
+
+// The unit that a word ends in behind a quantity, or "". One letter is none: dbhm may be a mean.
+std::string UnitBehindQuantity(const std::string& word, bool ends_the_name) {
+  for (std::size_t begin = 1; begin + 1 < word.size(); ++begin) {
+    const std::string_view head = std::string_view(word).substr(0, begin);
+    const bool quantity =
+        std::any_of(kQuantities.begin(), kQuantities.end(),
+                    [&](std::string_view name) { return head.ends_with(name); }) ||
+        std::find(kShortQuantities.begin(), kShortQuantities.end(), head) != kShortQuantities.end();
+    if (!quantity) continue;
+    if (const std::string unit = UnitOfWord(word.substr(begin), ends_the_name); !unit.empty()) return unit;
+  }
+  return "";
 }
 
 // "U.S._Survey-Foot " -> "us survey foot"
@@ -131,10 +151,11 @@ std::vector<std::string> LengthUnitsIn(std::string_view text) {
       while (end < text.size() && IsLetter(text[end]) &&
              !(capitals_begin && IsCapital(text[end]) && IsSmall(text[end - 1])))
         ++end;
-      const bool last = begin > 0 && std::none_of(text.begin() + static_cast<std::ptrdiff_t>(end), text.end(),
-                                                  [](unsigned char c) { return std::isalnum(c) != 0; });
-      const std::string unit =
-          IsMeasure(text.substr(0, begin)) ? "" : UnitOfWord(Plain(text.substr(begin, end - begin)), last);
+      const bool last = std::none_of(text.begin() + static_cast<std::ptrdiff_t>(end), text.end(),
+                                     [](unsigned char c) { return std::isalnum(c) != 0; });
+      const std::string word = Plain(text.substr(begin, end - begin));
+      std::string unit = IsMeasure(text.substr(0, begin)) ? "" : UnitOfWord(word, last && begin > 0);
+      if (unit.empty()) unit = UnitBehindQuantity(word, last);
       if (!unit.empty()) units.push_back(unit);
     }
   return units;
