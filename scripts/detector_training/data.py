@@ -119,7 +119,8 @@ def read_rendered(folder: pathlib.Path) -> DataSet:
             raise DataError(f"{folder}/labels.csv: has no column {column}")
     index = next((column for column in rows[0] if column.lower() == "index"), None) if rows else None
     if index and any(float(row[index]) <= float(above[index]) for above, row in zip(rows, rows[1:])):
-        raise DataError(f"{folder}/labels.csv: its rows are not in the order of their frames, each once; sort them by index")
+        raise DataError(f"{folder}/labels.csv: its rows are not in the order of their frames, each once; "
+                        "sort them by index")
     number = {key: np.array([float(row[key]) for row in rows]) for key in ("distance_m", "fire_px", "smoke_px",
                                                                          "occluded", "label")}
     if not np.isin(number["label"], (0, 1)).all():

@@ -123,29 +123,34 @@ std::optional<std::pair<std::string, double>> BehindQuantity(std::string_view me
   return std::nullopt;
 }
 
-// The words from first on as one. A letter before a whole speed is no prefix of its unit: vel_d_m_s is downwards.
-std::string Joined(const std::vector<std::string>& words, std::size_t first, std::size_t count) {
+// What the words from first on say as one. A letter before a whole speed is no prefix of its unit, but an axis: vel_d_m_s is
+// downwards.
+std::optional<std::pair<std::string, double>> OfWords(std::string_view meaning,
+                                                      const std::vector<std::string>& words,
+                                                      std::size_t first, std::size_t count) {
+  const bool speed = meaning.ends_with("_mps");
   std::string rest;
   for (std::size_t i = 1; i < count; ++i) rest += words[first + i];
-  return words[first].size() == 1 && QuotientOf(rest) ? "" : words[first] + rest;
+  if (const auto whole = QuotientOf(rest); whole && words[first].size() == 1) {
+    if (meaning != "climb_mps" || words[first] != "d") return std::nullopt;
+    return std::pair{"a rate downwards", -*whole};
+  }
+  const std::string word = words[first] + rest;
+  std::optional<double> factor = count == 1 ? FactorOf(meaning, word) : std::nullopt;
+  if (!factor && speed) factor = QuotientOf(word);
+  if (factor && *factor != 1.0) return std::pair{word, *factor};
+  return count == 1 ? BehindQuantity(meaning, word) : std::nullopt;
 }
 
 }  // namespace
 
 std::optional<std::pair<std::string, double>> OtherUnit(std::string_view meaning, std::string_view name) {
-  constexpr std::size_t kMostWords = 4;  // nautical miles per hour
-  const bool speed = meaning.ends_with("_mps");
+  const std::size_t most_words = meaning.ends_with("_mps") ? 4 : 1;  // nautical miles per hour
   for (const Capitals capitals : {Capitals::kPlain, Capitals::kBeginWords}) {
     const std::vector<std::string> words = WordsOf(name, capitals);
-    for (std::size_t count = speed ? kMostWords : 1; count > 0; --count)
-      for (std::size_t first = 0; first + count <= words.size(); ++first) {
-        const std::string word = Joined(words, first, count);
-        std::optional<double> factor = count == 1 ? FactorOf(meaning, word) : std::nullopt;
-        if (!factor && speed) factor = QuotientOf(word);
-        if (factor && *factor != 1.0) return std::pair{word, *factor};
-        if (count > 1) continue;
-        if (const auto behind = BehindQuantity(meaning, word)) return behind;
-      }
+    for (std::size_t count = most_words; count > 0; --count)
+      for (std::size_t first = 0; first + count <= words.size(); ++first)
+        if (auto other = OfWords(meaning, words, first, count)) return other;
   }
   return std::nullopt;
 }

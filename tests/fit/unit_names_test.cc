@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "studies/fit/unit_check.h"
 #include "tests/flight_logs/complaint.h"
@@ -116,6 +117,18 @@ TEST(UnitNamesTest, SumsAreNoRates) {
             "another column ('units: {power_w: 1}' if it is right)");
 }
 
+// They were decimetres.
+TEST(UnitNamesTest, ARateDownwardsIsNoOtherUnit) {
+  for (const auto& [name, factor] : {std::pair("vel_d_m_s", "-1"), std::pair("velD_mps", "-1"),
+                                     std::pair("vel_d_ms", "-1"), std::pair("vel_d_cm_s", "-0.01")})
+    EXPECT_EQ(
+        Says("climb_mps", name),
+        fmt::format("log.csv:1:1: climb_mps ('{}'): the name says a rate downwards; it looks like a rate "
+                    "downwards: put 'units: {{climb_mps: {}}}' into the format file (climb_mps: 1 if the "
+                    "values are right)",
+                    name, factor));
+}
+
 // What is said of 600 rows at 0.5 s whose clock stands so at each second and half second.
 std::string SaysOfTimes(const std::function<std::string(int, int)>& time) {
   std::string text = "t,p,v,w\n";
@@ -155,8 +168,10 @@ TEST(UnitNamesTest, NamesThatMerelyHaveSuchLettersAreTaken) {
                            "hkmhs", "speed_mps", "speed m/sec", "v_metres_per_second", "metersPerSecond",
                            "ins_speed", "min_speed", "speed_ms_h", "speed_m_h", "kms_speed"})
     EXPECT_EQ(Says("airspeed_mps", name), "") << name;
-  for (const char* name : {"vel_d_m_s", "vel_n_m_s", "vel_d_mps", "velD_ms", "V_m (m/s)", "vz_c m s-1",
-                           "veldms", "climbms", "lifts", "shifts", "driftspeed", "speedmin", "lymph"})
+  for (const char* name : {"vel_d_m_s", "vel_n_m_s", "speed_3d_m_s", "vel_d_mps", "speed3D (m/s)"})
+    EXPECT_EQ(Says("ground_speed_mps", name), "") << name;
+  for (const char* name :
+       {"V_m (m/s)", "vz_c m s-1", "veldms", "climbms", "lifts", "shifts", "driftspeed", "speedmin", "lymph"})
     EXPECT_EQ(Says("climb_mps", name), "") << name;
   for (const char* name : {"time_m_s", "Time (s)", "timestamp"}) EXPECT_EQ(Says("time_s", name), "") << name;
   for (const char* name : {"power_w", "PowerW", "maximum", "powerwatts", "powermean"})

@@ -65,9 +65,9 @@ constexpr std::array<std::string_view, 11> kOthersAtTheEnd = {
     "in", "fathom", "fathoms", "furlong", "furlongs", "chain", "chains", "nautical", "nmi", "mile", "miles"};
 
 // What a unit is written to without a gap: "heightft". The short ones are whole names besides, as many words end in them.
-constexpr std::array<std::string_view, 11> kQuantities = {"height",   "hgt",     "elevation", "elev",
-                                                          "altitude", "alt",     "dbh",       "diameter",
-                                                          "diam",     "easting", "northing"};
+constexpr std::array<std::string_view, 16> kQuantities = {
+    "height", "hgt",    "elevation", "elev",  "altitude", "alt",  "dbh",     "diameter",
+    "diam",   "radius", "width",     "depth", "crown",    "base", "easting", "northing"};
 constexpr std::array<std::string_view, 3> kShortQuantities = {"ht", "x", "y"};
 
 bool IsLetter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
@@ -104,7 +104,7 @@ std::string UnitBehindQuantity(const std::string& word, bool ends_the_name) {
                     [&](std::string_view name) { return head.ends_with(name); }) ||
         std::find(kShortQuantities.begin(), kShortQuantities.end(), head) != kShortQuantities.end();
     if (!quantity) continue;
-    if (const std::string unit = UnitOfWord(word.substr(begin), ends_the_name); !unit.empty()) return unit;
+    if (std::string unit = UnitOfWord(word.substr(begin), ends_the_name); !unit.empty()) return unit;
   }
   return "";
 }
