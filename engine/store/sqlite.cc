@@ -236,10 +236,10 @@ void Connection::CheckRead() const {
         file->pMethods == nullptr ||
         file->pMethods->xFileControl(file, SQLITE_FCNTL_LAST_ERRNO, &error) != SQLITE_OK)
       continue;
-    if (error == EIO || error == ENXIO)
+    if (error == EIO || error == ENXIO || error == ENOMEM)
       throw StoreError(
-          fmt::format("{}: cannot be read: {}; the disk has failed, which says nothing of what is stored",
-                      file_, Reason(error)));
+          fmt::format("{}: cannot be read: {}; the {} has failed, which says nothing of what is stored",
+                      file_, Reason(error), error == ENOMEM ? "system" : "disk"));
   }
 }
 

@@ -46,13 +46,14 @@ std::vector<unsigned char> BytesOf(const std::string& file) {
 }
 
 bool disk_fails = false;
+int error_of_disk = EIO;
 using Pread = ssize_t (*)(int, void*, size_t, off64_t);
 Pread system_pread = nullptr;
 
 // From the second page on, a disk that cannot be read.
 ssize_t FailingPread(int file, void* bytes, size_t size, off64_t at) {
   if (!disk_fails || at < 16384) return system_pread(file, bytes, size, at);
-  errno = EIO;
+  errno = error_of_disk;
   return -1;
 }
 
@@ -81,6 +82,12 @@ TEST(DamageTest, ADiskThatCannotBeReadIsNotDamage) {
                            "of what is stored";
   EXPECT_EQ(refusal([](ResultReader& reader) { DigestOf(reader); }), said);
   EXPECT_EQ(refusal([](ResultReader& reader) { reader.FindDamage(); }), said);
+  error_of_disk = ENOMEM;
+  EXPECT_EQ(refusal([](ResultReader& reader) { reader.FindDamage(); }),
+            ResultsIn(temp / "run") +
+                ": cannot be read: Cannot allocate memory; the system has failed, which says "
+                "nothing of what is stored");
+  error_of_disk = EIO;
   disk_fails = false;
   vfs->xSetSystemCall(vfs, "pread64", nullptr);
   EXPECT_EQ(ResultReader(temp / "run").FindDamage().size(), 0u);
