@@ -161,23 +161,6 @@ TEST_F(RasterReadingTest, ACoordinateSystemThatIsNotKnownIsRefused) {
       << Height();
 }
 
-// One bit of a block's place gave heights of other bytes.
-TEST_F(RasterReadingTest, BlocksDoNotLieOverOthers) {
-  WriteRaster(folder.Path("g.tif"), Slope());
-  std::ifstream file(folder.Path("g.tif"), std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  const auto tag = bytes.find(Shorts({273, 4, 1, 0}));
-  ASSERT_NE(tag, std::string::npos);
-  std::string moved = bytes;
-  moved[tag + 8] = 4;  // into the header
-  moved[tag + 9] = 0;
-  folder.Write("g.tif", moved);
-  EXPECT_EQ(Height(),
-            "'g.tif': damaged: a block of its heights begins at byte 4, where others stand; bring the whole "
-            "file, or write it "
-            "anew (gdal_translate)");
-}
-
 // Was read as metres.
 TEST_F(RasterReadingTest, TheUnitOfAnUnknownSystemCounts) {
   WriteRaster(folder.Path("g.tif"), Slope());

@@ -75,7 +75,7 @@ class Reference {
     dataset.GetGeoTransform(transform_.data());
     if (const OGRSpatialReference* stored = dataset.GetSpatialRef(); stored != nullptr && !stored->IsEmpty())
       system_ = *stored;
-    if (const std::string why = WhyBlocksAreElsewhere(file); !why.empty()) Fail(why);
+    if (const std::string why = WhyBlocksDoNotFit(file); !why.empty()) Fail(why);
     keys_ = ReadGeoKeys(file);
     // A key is compared on its own: GDAL may not have understood it.
     if (own != nullptr && UnitOfKey(keys_, kProjectedUnitsKey).empty())

@@ -46,6 +46,7 @@ struct Bytes {
 struct Tag {
   std::uint64_t type = 0, count = 0;
   std::uint64_t begin = 0;  // of its values
+  bool apart = false;       // they stand outside the directory
 };
 
 // The first one of a TIFF; without tags for other files.
@@ -64,8 +65,8 @@ class TiffDirectory {
     for (std::uint64_t i = 0; i < tags; ++i) {
       const std::uint64_t at = directory_.begin + count_bytes + i * tag_bytes;
       Tag tag{numbers_.At(at + 2, 2), numbers_.At(at + 4, offset_bytes), at + 4 + offset_bytes};
-      if (tag.count > offset_bytes / std::max<std::size_t>(1, SizeOf(tag)))
-        tag.begin = numbers_.At(tag.begin, offset_bytes);
+      tag.apart = tag.count > offset_bytes / std::max<std::size_t>(1, SizeOf(tag));
+      if (tag.apart) tag.begin = numbers_.At(tag.begin, offset_bytes);
       tags_.emplace(numbers_.At(at, 2), tag);
     }
   }
@@ -76,29 +77,110 @@ class TiffDirectory {
     const auto found = tags_.find(name);
     return found == tags_.end() ? nullptr : &found->second;
   }
-  Bytes header() const { return header_; }
-  Bytes directory() const { return directory_; }
+
+  // What stands in the file beside blocks: header, directory, values of tags. These may lie over each other: some writers store
+  // equal values once.
+  std::vector<Bytes> PlacesOfTags() const {
+    std::vector<Bytes> places = {header_, directory_};
+    for (const auto& [name, tag] : tags_)
+      if (tag.apart) places.push_back({tag.begin, tag.begin + tag.count * SizeOf(tag)});
+    return places;
+  }
 
   // Whole numbers of the tag; none where it is not there.
   std::vector<std::uint64_t> Numbers(std::uint64_t name) {
     constexpr std::uint64_t kMostBlocks = 1 << 20;
     std::vector<std::uint64_t> values;
     const Tag* const tag = Find(name);
-    if (tag == nullptr || SizeOf(*tag) == 0) return values;
+    if (tag == nullptr || !IsWhole(*tag)) return values;
     for (std::uint64_t i = 0; i < std::min(tag->count, kMostBlocks); ++i)
       values.push_back(numbers_.At(tag->begin + i * SizeOf(*tag), SizeOf(*tag)));
     return values;
   }
+  std::uint64_t Number(std::uint64_t name, std::uint64_t otherwise) {
+    const std::vector<std::uint64_t> values = Numbers(name);
+    return values.empty() ? otherwise : values.front();
+  }
 
  private:
-  static std::size_t SizeOf(const Tag& tag) {  // of one number
-    return tag.type == 3 ? 2 : tag.type == 4 ? 4 : tag.type == 16 ? 8 : 0;
+  static std::size_t SizeOf(const Tag& tag) {  // of one value, by its type; 0 for unknown ones
+    constexpr std::array<std::size_t, 19> kSizes = {0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4, 0, 0, 8, 8, 8};
+    return tag.type < kSizes.size() ? kSizes[tag.type] : 0;
   }
+  static bool IsWhole(const Tag& tag) { return tag.type == 3 || tag.type == 4 || tag.type == 16; }
 
   TiffNumbers numbers_;
   Bytes header_, directory_;
   std::map<std::uint64_t, Tag> tags_;  // by their numbers
 };
+
+constexpr std::uint64_t kWidth = 256, kLength = 257, kBits = 258, kCompression = 259, kStrips = 273,
+                        kSamples = 277, kRowsPerStrip = 278, kStripBytes = 279, kPlanes = 284,
+                        kTileWidth = 322, kTileLength = 323, kTiles = 324, kTileBytes = 325;
+
+// The blocks that the sides of the grid make.
+struct BlockShape {
+  std::uint64_t in_plane = 0, planes = 1;  // how many; none where the file does not tell its sides
+  std::uint64_t row_bytes = 0;             // without compression
+  std::uint64_t rows = 0, last_rows = 0;   // of a block, of the last one of a plane
+};
+
+BlockShape ShapeOf(TiffDirectory& tiff, bool tiled) {
+  constexpr std::uint64_t kApart = 2, kBitsPerByte = 8;
+  const auto blocks = [](std::uint64_t cells, std::uint64_t of) { return (cells + of - 1) / of; };
+  const std::uint64_t length = tiff.Number(kLength, 0), width = tiff.Number(kWidth, 0);
+  const std::uint64_t samples = tiff.Number(kSamples, 1);
+  const bool apart = tiff.Number(kPlanes, 1) == kApart;
+  const std::uint64_t columns = tiled ? tiff.Number(kTileWidth, 0) : width;
+  BlockShape shape;
+  shape.planes = apart ? samples : 1;
+  shape.rows = tiled ? tiff.Number(kTileLength, 0) : std::min(length, tiff.Number(kRowsPerStrip, length));
+  if (columns == 0 || shape.rows == 0) return shape;
+  const std::uint64_t down = blocks(length, shape.rows);
+  shape.in_plane = blocks(width, columns) * down;
+  shape.row_bytes = blocks(columns * (apart ? 1 : samples) * tiff.Number(kBits, 1), kBitsPerByte);
+  shape.last_rows = tiled ? shape.rows : length - (down - 1) * shape.rows;
+  return shape;
+}
+
+// Without compression libtiff reads as many bytes as it needs, whatever is said; other sides shear or shift the heights.
+std::string WhySizesDiffer(TiffDirectory& tiff, const BlockShape& shape, std::uint64_t count,
+                           const std::vector<std::uint64_t>& sizes) {
+  if (shape.in_plane == 0) return "";
+  const std::string sides = fmt::format("{} x {} cells", tiff.Number(kWidth, 0), tiff.Number(kLength, 0));
+  if (count != shape.in_plane * shape.planes)
+    return fmt::format("it has {} blocks of heights, and its {} make {}", count, sides,
+                       shape.in_plane * shape.planes);
+  if (tiff.Number(kCompression, 1) != 1) return "";
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const bool last = (i + 1) % shape.in_plane == 0;
+    const std::uint64_t bytes = shape.row_bytes * (last ? shape.last_rows : shape.rows);
+    // Some writers fill up the last strip of several.
+    const bool filled = last && shape.in_plane > 1 && sizes[i] == shape.row_bytes * shape.rows;
+    if (sizes[i] != 0 && sizes[i] != bytes && !filled)
+      return fmt::format("block {} of its heights has {} bytes, and its {} make {}", i + 1, sizes[i], sides,
+                         bytes);
+  }
+  return "";
+}
+
+std::string WhyOverOthers(std::vector<Bytes> blocks, const std::vector<Bytes>& others) {
+  std::sort(blocks.begin(), blocks.end());
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());  // equal blocks may be stored once
+  std::vector<std::pair<Bytes, bool>> places;                             // true: a block
+  places.reserve(blocks.size() + others.size());
+  for (const Bytes& block : blocks) places.emplace_back(block, true);
+  for (const Bytes& other : others) places.emplace_back(other, false);
+  std::sort(places.begin(), places.end());
+  std::uint64_t blocks_end = 0, others_end = 0;
+  for (const auto& [place, is_block] : places) {
+    if (place.begin < blocks_end || (is_block && place.begin < others_end))
+      return fmt::format("a block of its heights lies at byte {}, where others stand", place.begin);
+    std::uint64_t& end = is_block ? blocks_end : others_end;
+    end = std::max(end, place.end);
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -116,25 +198,22 @@ std::map<int, int> ReadGeoKeys(const std::filesystem::path& file) {
   return keys;
 }
 
-std::string WhyBlocksAreElsewhere(const std::filesystem::path& file) {
-  constexpr std::uint64_t kStrips = 273, kStripBytes = 279, kTiles = 324, kTileBytes = 325;
+std::string WhyBlocksDoNotFit(const std::filesystem::path& file) {
   TiffDirectory tiff(file);
-  std::vector<Bytes> places = {tiff.header(), tiff.directory()};
+  const bool tiled = tiff.Find(kTileWidth) != nullptr;
+  std::string why;
+  std::vector<Bytes> blocks;
   for (const auto& [where, how_many] : {std::pair(kStrips, kStripBytes), std::pair(kTiles, kTileBytes)}) {
+    const Tag* const tag = tiff.Find(where);
+    if (tag == nullptr) continue;
     const std::vector<std::uint64_t> begins = tiff.Numbers(where), sizes = tiff.Numbers(how_many);
+    if (why.empty()) why = WhySizesDiffer(tiff, ShapeOf(tiff, tiled), tag->count, sizes);
     for (std::size_t i = 0; i < std::min(begins.size(), sizes.size()); ++i)
-      if (sizes[i] > 0) places.push_back({begins[i], begins[i] + sizes[i]});
+      if (sizes[i] > 0) blocks.push_back({begins[i], begins[i] + sizes[i]});
   }
-  std::sort(places.begin(), places.end());
-  places.erase(std::unique(places.begin(), places.end()), places.end());  // equal blocks may be stored once
-  for (std::size_t i = 1; i < places.size(); ++i)
-    if (places[i].begin < places[i - 1].end)
-      return fmt::format(
-          "damaged: a block of its heights begins at byte {}, where others stand; bring the whole file, or "
-          "write it anew "
-          "(gdal_translate)",
-          places[i].begin);
-  return "";
+  if (why.empty()) why = WhyOverOthers(blocks, tiff.PlacesOfTags());
+  if (why.empty()) return why;
+  return fmt::format("damaged: {}; bring the whole file, or write it anew (gdal_translate)", why);
 }
 
 std::string UnitOfKey(const std::map<int, int>& keys, int key) {

@@ -11,9 +11,10 @@ namespace ed3r::world {
 // By their numbers in the GeoTIFF standard; those of the first image. Empty: no TIFF, or one without keys.
 std::map<int, int> ReadGeoKeys(const std::filesystem::path& file);
 
-// Why not all blocks of heights can be where they are said to be: over each other, or over the directory. One bit of their places
-// would give other heights, of which GDAL says nothing. "" where nothing speaks against it.
-std::string WhyBlocksAreElsewhere(const std::filesystem::path& file);
+// Why not all blocks of heights can be as they are said to be: over each other, over the directory or the values of its tags; or
+// more, fewer, longer or shorter than the grid's sides make them. One bit of these numbers would give other heights, of which
+// GDAL says nothing. "" where nothing speaks against it.
+std::string WhyBlocksDoNotFit(const std::filesystem::path& file);
 
 inline constexpr int kProjectedUnitsKey = 3076;
 inline constexpr int kVerticalUnitsKey = 4099;
