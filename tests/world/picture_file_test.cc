@@ -121,7 +121,7 @@ const cv::Point kSeen[] = {{3, 5}, {60, 5}, {60, 42}, {3, 42}, {5, 3}, {42, 3}, 
 TEST_F(PictureFile, APngIsTurnedAsItsCameraSays) {
   const cv::Mat stored = Pattern<cv::Vec3b>(CV_8UC3);
   const std::string png = Encoded(".png", stored);
-  const cv::Vec3b pixel = stored.at<cv::Vec3b>(5, 3);
+  const cv::Vec3b& pixel = stored.at<cv::Vec3b>(5, 3);
   for (int orientation = 1; orientation <= 8; ++orientation)
     for (const bool little : {true, false}) {
       SCOPED_TRACE(orientation);
@@ -148,6 +148,65 @@ TEST_F(PictureFile, APngsDamagedChunksAreRefused) {
     damaged[kInChunk + 3] ^= 1;
     ExpectRefusal(damaged, fmt::format("is damaged or cut short: {}: CRC error", name));
   }
+}
+
+// libpng gives up chunks behind a thousand others, and long ones.
+TEST_F(PictureFile, ACamerasWordCountsWhereverItStands) {
+  const std::string png = Encoded(".png", Pattern<cv::Vec3b>(CV_8UC3));
+  const std::string exif = "eXIf" + ExifBlock(6, true);
+  std::string notes = WithChunk(png, exif);
+  for (int note = 0; note < 1500; ++note) notes = WithChunk(notes, std::string("tEXta\0b", 7));
+  std::string large = exif;
+  large.resize(9'000'000);
+  for (const std::string& picture : {notes, WithChunk(png, large)})
+    EXPECT_EQ(Read(picture).note, "turned as its camera says");
+}
+
+// A PNG of two rows of three pixels, which are numbers of colours; with the chunks in this order, "" for the pixels.
+std::string WithPalette(int bits, const std::string& rows, std::vector<std::string> chunks) {
+  std::string packed(100, '\0');
+  uLongf size = packed.size();
+  EXPECT_EQ(::compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+                       reinterpret_cast<const Bytef*>(rows.data()), rows.size()),
+            Z_OK);
+  std::string png = "\x89PNG\r\n\x1a\n";
+  std::string header("IHDR\0\0\0\3\0\0\0\2\0\3\0\0\0", 17);
+  header[12] = static_cast<char>(bits);
+  // Chunks are put behind the header: the last one first.
+  png = WithChunk(png + std::string(25, ' '), "IEND");
+  for (auto chunk = chunks.rbegin(); chunk != chunks.rend(); ++chunk)
+    png = WithChunk(png, chunk->empty() ? "IDAT" + packed.substr(0, size) : *chunk);
+  const std::string first = WithChunk(std::string(33, ' '), header).substr(33);
+  return png.replace(8, 25, first);
+}
+
+TEST_F(PictureFile, APalettesColoursAreThoseOfItsNumbers) {
+  const std::string palette = "PLTE\x10\x20\x30\x40\x50\x60\x70\x80\x90", through("tRNS\xff\0", 6);
+  const std::string in_bytes("\0\0\1\2\0\2\1\0", 8), in_two_bits("\0\x18\0\x90", 4);
+  for (const auto& [bits, rows] : {std::pair(8, in_bytes), std::pair(2, in_two_bits)}) {
+    const Picture opaque = Read(WithPalette(bits, rows, {palette, ""}));
+    EXPECT_EQ(opaque.note, "");
+    const cv::Vec3b colours[] = {{0x30, 0x20, 0x10}, {0x60, 0x50, 0x40}, {0x90, 0x80, 0x70}};
+    for (int x = 0; x < 3; ++x) {
+      EXPECT_EQ(opaque.bgr.at<cv::Vec3b>(0, x), colours[x]);
+      EXPECT_EQ(opaque.bgr.at<cv::Vec3b>(1, x), colours[2 - x]);
+    }
+    const Picture seen = Read(WithPalette(bits, rows, {palette, through, ""}));
+    EXPECT_EQ(seen.note, "see-through parts as black");
+    EXPECT_EQ(seen.bgr.at<cv::Vec3b>(0, 1), cv::Vec3b(0, 0, 0));
+    EXPECT_EQ(seen.bgr.at<cv::Vec3b>(0, 2), colours[2]);
+    const std::string damaged = "is damaged or cut short: ";
+    ExpectRefusal(WithPalette(bits, rows, {palette.substr(0, 10), ""}),
+                  damaged + "a pixel of colour 2 of 0 .. 1");
+    for (const std::vector<std::string>& chunks : {std::vector<std::string>{palette, "", through},
+                                                   {through, palette, ""},
+                                                   {palette, through + "1234", ""}})
+      ExpectRefusal(WithPalette(bits, rows, chunks), damaged + "tRNS: ");
+  }
+  const std::string png = Encoded(".png", Pattern<cv::Vec3b>(CV_8UC3));
+  ExpectRefusal(WithChunk(png, "tRNS12345"), "is damaged or cut short: tRNS: ");
+  const std::string with_alpha = Encoded(".png", Pattern<cv::Vec4b>(CV_8UC4));
+  EXPECT_TRUE(Same(Read(WithChunk(with_alpha, "tRNS12")).bgr, Read(with_alpha).bgr));
 }
 
 // A JPEG with a segment of metadata behind its first marker.
