@@ -127,6 +127,21 @@ TEST(RasterBlocks, TagsMayShareTheirValues) {
   EXPECT_EQ(tiff.Height(), "44.00");
 }
 
+// Only those of one height: some writers store these once.
+TEST(RasterBlocks, LieAtOnePlaceEach) {
+  const TestFolder folder;
+  Tiff tiff(folder);
+  tiff.Split(1);
+  const auto begins = static_cast<std::size_t>(tiff.Value(kStrips));
+  const int third = tiff.At(begins + 8, 4);
+  tiff.bytes.replace(begins, 4, Number(third, 4));
+  EXPECT_EQ(tiff.Height(), Damaged(fmt::format("two blocks of its heights lie at byte {}", third)));
+  const auto row = static_cast<std::size_t>(third);
+  for (std::size_t column = 1; column < 11; ++column)
+    tiff.bytes.replace(row + 4 * column, 4, tiff.bytes.substr(row, 4));
+  EXPECT_EQ(tiff.Height(), "18.00");
+}
+
 TEST(RasterBlocks, AreAsTheSidesMakeThem) {
   const TestFolder folder;
   const Tiff one(folder);

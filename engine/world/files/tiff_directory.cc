@@ -120,9 +120,9 @@ constexpr std::uint64_t kWidth = 256, kLength = 257, kBits = 258, kCompression =
 
 // The blocks that the sides of the grid make.
 struct BlockShape {
-  std::uint64_t in_plane = 0, planes = 1;  // how many; none where the file does not tell its sides
-  std::uint64_t row_bytes = 0;             // without compression
-  std::uint64_t rows = 0, last_rows = 0;   // of a block, of the last one of a plane
+  std::uint64_t in_plane = 0, planes = 1;       // how many; none where the file does not tell its sides
+  std::uint64_t cell_bytes = 1, row_bytes = 0;  // without compression
+  std::uint64_t rows = 0, last_rows = 0;        // of a block, of the last one of a plane
 };
 
 BlockShape ShapeOf(TiffDirectory& tiff, bool tiled) {
@@ -138,7 +138,9 @@ BlockShape ShapeOf(TiffDirectory& tiff, bool tiled) {
   if (columns == 0 || shape.rows == 0) return shape;
   const std::uint64_t down = blocks(length, shape.rows);
   shape.in_plane = blocks(width, columns) * down;
-  shape.row_bytes = blocks(columns * (apart ? 1 : samples) * tiff.Number(kBits, 1), kBitsPerByte);
+  const std::uint64_t cell_bits = (apart ? 1 : samples) * tiff.Number(kBits, 1);
+  shape.cell_bytes = std::max<std::uint64_t>(1, cell_bits / kBitsPerByte);
+  shape.row_bytes = blocks(columns * cell_bits, kBitsPerByte);
   shape.last_rows = tiled ? shape.rows : length - (down - 1) * shape.rows;
   return shape;
 }
@@ -164,10 +166,31 @@ std::string WhySizesDiffer(TiffDirectory& tiff, const BlockShape& shape, std::ui
   return "";
 }
 
+bool IsOneHeight(TiffDirectory& tiff, const Bytes& block, std::uint64_t cell_bytes) {
+  constexpr std::uint64_t kMostCells = 1 << 24;
+  if (cell_bytes > 8 || (block.end - block.begin) / cell_bytes > kMostCells) return false;
+  const std::uint64_t first = tiff.At(block.begin, cell_bytes);
+  for (std::uint64_t at = block.begin; at + cell_bytes <= block.end; at += cell_bytes)
+    if (tiff.At(at, cell_bytes) != first) return false;
+  return true;
+}
+
+// Some writers store blocks of one height (most often NODATA) once. Ground does not repeat itself: there, one bit turned the
+// place of one block into that of another. Compressed, their lengths would differ.
+std::string WhyTwoAtOnePlace(TiffDirectory& tiff, const std::vector<Bytes>& sorted,
+                             std::uint64_t cell_bytes) {
+  if (tiff.Number(kCompression, 1) != 1) return "";
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const bool second = sorted[i] == sorted[i - 1] && (i < 2 || sorted[i] != sorted[i - 2]);
+    if (second && !IsOneHeight(tiff, sorted[i], cell_bytes))
+      return fmt::format("two blocks of its heights lie at byte {}", sorted[i].begin);
+  }
+  return "";
+}
+
 std::string WhyOverOthers(std::vector<Bytes> blocks, const std::vector<Bytes>& others) {
-  std::sort(blocks.begin(), blocks.end());
-  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());  // equal blocks may be stored once
-  std::vector<std::pair<Bytes, bool>> places;                             // true: a block
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  std::vector<std::pair<Bytes, bool>> places;  // true: a block
   places.reserve(blocks.size() + others.size());
   for (const Bytes& block : blocks) places.emplace_back(block, true);
   for (const Bytes& other : others) places.emplace_back(other, false);
@@ -200,17 +223,19 @@ std::map<int, int> ReadGeoKeys(const std::filesystem::path& file) {
 
 std::string WhyBlocksDoNotFit(const std::filesystem::path& file) {
   TiffDirectory tiff(file);
-  const bool tiled = tiff.Find(kTileWidth) != nullptr;
+  const BlockShape shape = ShapeOf(tiff, tiff.Find(kTileWidth) != nullptr);
   std::string why;
   std::vector<Bytes> blocks;
   for (const auto& [where, how_many] : {std::pair(kStrips, kStripBytes), std::pair(kTiles, kTileBytes)}) {
     const Tag* const tag = tiff.Find(where);
     if (tag == nullptr) continue;
     const std::vector<std::uint64_t> begins = tiff.Numbers(where), sizes = tiff.Numbers(how_many);
-    if (why.empty()) why = WhySizesDiffer(tiff, ShapeOf(tiff, tiled), tag->count, sizes);
+    if (why.empty()) why = WhySizesDiffer(tiff, shape, tag->count, sizes);
     for (std::size_t i = 0; i < std::min(begins.size(), sizes.size()); ++i)
       if (sizes[i] > 0) blocks.push_back({begins[i], begins[i] + sizes[i]});
   }
+  std::sort(blocks.begin(), blocks.end());
+  if (why.empty()) why = WhyTwoAtOnePlace(tiff, blocks, shape.cell_bytes);
   if (why.empty()) why = WhyOverOthers(blocks, tiff.PlacesOfTags());
   if (why.empty()) return why;
   return fmt::format("damaged: {}; bring the whole file, or write it anew (gdal_translate)", why);
