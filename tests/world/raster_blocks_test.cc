@@ -196,8 +196,8 @@ TEST(RasterBlocks, AreReadInEveryFormThatGdalWrites) {
     }
 }
 
-// As some writers do.
-TEST(RasterBlocks, TheLastStripMayBeFilledUp) {
+// It may be one that was filled up, or one bit in the number of rows: gdal_translate tells, and writes it as it should be.
+TEST(RasterBlocks, TheLastStripHasTheRowsThatAreLeft) {
   const TestFolder folder;
   Tiff tiff(folder);
   tiff.Split(4);
@@ -208,9 +208,9 @@ TEST(RasterBlocks, TheLastStripMayBeFilledUp) {
   const std::string row = tiff.bytes.substr(static_cast<std::size_t>(tiff.At(last_begin, 4)), 44);
   tiff.bytes.replace(last_begin, 4, Number(static_cast<int>(tiff.bytes.size()), 4));
   tiff.bytes += row + std::string(3 * 44, '\0');
+  EXPECT_EQ(tiff.Height(), Damaged("block 3 of its heights has 176 bytes, and its 11 x 9 cells make 44"));
+  tiff.bytes.replace(last_size, 4, Number(44, 4));
   EXPECT_EQ(tiff.Height(), "44.00");
-  tiff.bytes.replace(last_size, 4, Number(2 * 44, 4));
-  EXPECT_EQ(tiff.Height(), Damaged("block 3 of its heights has 88 bytes, and its 11 x 9 cells make 44"));
 }
 
 }  // namespace

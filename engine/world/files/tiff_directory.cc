@@ -157,9 +157,7 @@ std::string WhySizesDiffer(TiffDirectory& tiff, const BlockShape& shape, std::ui
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const bool last = (i + 1) % shape.in_plane == 0;
     const std::uint64_t bytes = shape.row_bytes * (last ? shape.last_rows : shape.rows);
-    // Some writers fill up the last strip of several.
-    const bool filled = last && shape.in_plane > 1 && sizes[i] == shape.row_bytes * shape.rows;
-    if (sizes[i] != 0 && sizes[i] != bytes && !filled)
+    if (sizes[i] != 0 && sizes[i] != bytes)
       return fmt::format("block {} of its heights has {} bytes, and its {} make {}", i + 1, sizes[i], sides,
                          bytes);
   }
