@@ -197,7 +197,10 @@ void StoreFile::SetJournal(bool empty) {
   const bool takes_up_a_log = database_->Text("PRAGMA journal_mode") == "wal";
   if (!takes_up_a_log) database_->Execute(mark);
   database_->Execute("PRAGMA journal_mode = WAL");
-  if (takes_up_a_log) database_->Execute(mark + "; PRAGMA wal_checkpoint(TRUNCATE)");
+  // The log begins with the file's own mark: a kill may come before the new one is in the file, or a reader keep it out.
+  if (takes_up_a_log)
+    database_->Execute(fmt::format("PRAGMA schema_version = {}; {}; PRAGMA wal_checkpoint(TRUNCATE)",
+                                   database_->Int("PRAGMA schema_version"), mark));
   marks_ = {database_->Int("PRAGMA schema_version")};
   if (takes_up_a_log && before) marks_.push_back(before->mark);
   // A commit outlives the process at once, and a power cut costs the last commits but never the file.

@@ -179,6 +179,24 @@ TEST(JournalsTest, ALogIsLookedForBesideWhatALinkLeadsTo) {
   EXPECT_EQ(ResultReader(temp / "moved").CountMissions(), 1);
 }
 
+// Killed before the mark of a session is in the file: at once, or after all that it did while somebody was reading.
+TEST(JournalsTest, ALogThatBeginsWithAMarkIsOfItsFile) {
+  const TempDir temp;
+  WriteStore(temp / "run", kFew);
+  Connection reader(ResultsIn(temp / "run"), Connection::Access::kReadWrite);
+  reader.Execute("PRAGMA journal_mode = WAL; BEGIN");
+  ASSERT_EQ(reader.Int("SELECT count(*) FROM missions"), 2);
+  const auto store = ResultStore::Open(temp / "run", TestRecipe(), TestLayout());
+  CopyAsKilled(temp / "run", temp / "at once");
+  EXPECT_EQ(ResultReader(temp / "at once").CountMissions(), 2);
+  store->Put(kNotFlown, TestRecord(kNotFlown), 0.25);
+  store->Commit();
+  CopyAsKilled(temp / "run", temp / "later");
+  EXPECT_EQ(ResultReader(temp / "later").CountMissions(), 3);
+  WriteStore(temp / "later", kMore);
+  EXPECT_TRUE(ResultReader(temp / "later").FindDamage().empty());
+}
+
 // The system's memory opens like a file, and its first bytes fail as those of a broken disk do. Taken for no journal, it would
 // be left for SQLite to find later.
 TEST(JournalsTest, AJournalThatCannotBeReadIsNotTakenForNone) {
