@@ -47,6 +47,21 @@ TEST_F(WatchTest, ARunThatHasEndedIsShownOnce) {
   EXPECT_NE(ReadAll(page).find("6 of 6 missions"), std::string::npos);
 }
 
+TEST_F(WatchTest, ABatchSystemsSignalEndsALookAsItEndsARun) {
+  const std::string half = (out_ / "half").string();
+  ASSERT_EQ(Ed3r(fmt::format("run {}/sweeps/rbs.yaml --missions 6 --shard 1/2 --quiet --out {}",
+                             ED3R_SOURCE_DIR, half))
+                .status,
+            0);
+  for (const auto& [signal, status] : {std::pair("TERM", 75), std::pair("INT", 130)}) {
+    const CommandResult result = Ed3r(fmt::format("status {} --watch", half),
+                                      fmt::format("timeout --preserve-status -s {} 3", signal));
+    EXPECT_EQ(result.status, status) << signal;
+    EXPECT_NE(result.out.find("3 of 6 missions"), std::string::npos) << result.out;
+    EXPECT_EQ(result.err, status == 75 ? "ended by SIGTERM\n" : "") << signal;
+  }
+}
+
 TEST_F(WatchTest, AViewerHoldsTheFlightAndItsDecisions) {
   const std::string out = (out_ / "replay").string();
   const CommandResult result =
