@@ -217,6 +217,8 @@ void Connection::Fail() const {
       throw StoreError(fmt::format(
           "{}: {}; what is stored is kept: make room, and the same command continues", file_, reason));
     case SQLITE_NOMEM:
+      throw StoreError(
+          fmt::format("{}: {}, or a length in it is damaged and asks for more than there is", file_, reason));
     case SQLITE_TOOBIG:
     case SQLITE_PROTOCOL:
     case SQLITE_NOLFS:

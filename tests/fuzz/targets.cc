@@ -22,6 +22,7 @@
 #include "engine/store/digest.h"
 #include "engine/store/reader.h"
 #include "engine/store/schema.h"
+#include "engine/store/sqlite.h"
 #include "engine/sweep/setting.h"
 #include "engine/sweep/sweep_file.h"
 #include "engine/world/files/jpeg_check.h"
@@ -78,6 +79,7 @@ void Refusable(Read read) {
   try {
     read();
   } catch (const UserError&) {
+  } catch (const store::StoreError&) {  // SQLite takes a damaged length for want of memory
   }
 }
 
