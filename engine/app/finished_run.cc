@@ -36,8 +36,8 @@ bool SameRecipe(const sweep::SweepPlan& plan, store::ResultReader& reader) {
 bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const std::string& cache,
                      bool quiet) {
   try {
-    const std::string program = ThisCommand(cache);
-    const auto finished = program.empty() ? std::nullopt : store::RecallFinished(dir, program);
+    const std::string command = ThisCommand(cache);
+    const auto finished = command.empty() ? std::nullopt : store::RecallFinished(dir, command);
     if (!finished || (!quiet && finished->table.empty())) return false;
     store::ResultReader reader(dir);
     if (!SameRecipe(plan, reader)) return false;
@@ -64,10 +64,10 @@ bool TellFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const
 void RememberFinishedRun(const sweep::SweepPlan& plan, const std::string& dir, const std::string& cache,
                          const store::FileMoment& told, std::int64_t missions, const std::string& table,
                          const std::string& networks) {
-  const std::string program = ThisCommand(cache);
-  if (program.empty()) return;
+  const std::string command = ThisCommand(cache);
+  if (command.empty()) return;
   try {
-    store::RememberFinished(dir, told, plan.CanonicalText(), {program, missions, table, networks});
+    store::RememberFinished(dir, told, plan.CanonicalText(), {command, missions, table, networks});
   } catch (const std::exception&) {  // it saves time, and the results are stored
   }
 }

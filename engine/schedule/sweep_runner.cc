@@ -191,12 +191,12 @@ class SweepRun {
   }
 
   // Once it is out: a mission that networks have learned from would be missing unseen, a round of a precision that is over is
-  // not flown again, and a stage that waits is not flown.
+  // not flown again, and a stage that waits is not flown (one that is named has been looked at).
   bool FliesAgain(const std::optional<sweep::RunId>& id) const {
     if (FliesAll()) return true;
     if (!id || options_.only_failed || !InShard(layout_.LinearIndex(*id), options_.shard)) return false;
     const sweep::Stage& stage = plan_.stages[static_cast<std::size_t>(id->stage)];
-    return (options_.stage.empty() || stage.name == options_.stage) && !stage.precision && Ready(stage);
+    return !stage.precision && (stage.name == options_.stage || (options_.stage.empty() && Ready(stage)));
   }
 
   // Nothing is built on damaged missions, and a run that ends well leaves none behind.

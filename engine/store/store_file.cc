@@ -215,8 +215,7 @@ void StoreFile::CheckBeforeGrowth(Repair repair) {
   if (repair == Repair::kOfAPart)
     throw UserError(
         fmt::format("{}: {} is damaged: {}; where a plan grows --repair goes without --stage, --shard and "
-                    "--only-failed, or "
-                    "repair it by the plan that it has",
+                    "--only-failed, or repair it by the plan that it has",
                     database_->file(), repaired_.front().name, repaired_.front().what));
   RemoveMissions(*database_, repaired_);
 }

@@ -128,8 +128,7 @@ Command AddStatus(Program& program) {
   parser
       .Option("--stage", *stage,
               "Whether this stage is finished: exit 0; 3 when missions failed or are missing, or networks "
-              "are; 75 when a stage "
-              "with a precision is due another round")
+              "are; 75 when a stage with a precision is due another round")
       .Excludes({"--watch", "--html", "--json"});
   return {parser, [options, stage, watch, every_s] {
             watch->dir = options->dir;
